@@ -66,8 +66,7 @@ mod tune;
 pub use by_name::{download, learner, learner_with, models};
 pub use export::{export, network};
 pub use fit::{
-    FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_active, fit_demonstrations, fit_policy,
-    teacher,
+    FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_active, fit_policy, teacher,
     teacher_with,
 };
 pub use online::{OnlineReport, OnlineTuning, TrackingResult};
@@ -91,6 +90,8 @@ pub use opendr_faces::{face_recognition, facial_expression_recognition, facial_l
 pub use opendr_grasping::{ambiguity_measure, grasp_detection};
 #[cfg(feature = "hands")]
 pub use opendr_hands::{gesture_recognition, hand_pose_estimation};
+#[cfg(feature = "lerobot")]
+pub use opendr_lerobot as lerobot;
 #[cfg(feature = "multimodal")]
 pub use opendr_multimodal::multimodal_human_centric;
 #[cfg(feature = "panoptic")]
@@ -126,11 +127,10 @@ pub use tune::{
 };
 pub use {
     opendr_active as active, opendr_control as control, opendr_datasets as datasets,
-    opendr_evaluation as evaluation, opendr_imitation as imitation, opendr_inference as inference, opendr_metrics as metrics,
-    opendr_optimize as optimize, opendr_planning as planning, opendr_rl as rl, opendr_runlog as runlog,
-    opendr_simulation as simulation, opendr_tuning as tuning, opendr_vision as vision, opendr_zoo as zoo,
+    opendr_evaluation as evaluation, opendr_imitation as imitation, opendr_inference as inference,
+    opendr_metrics as metrics, opendr_optimize as optimize, opendr_planning as planning, opendr_rl as rl,
+    opendr_runlog as runlog, opendr_simulation as simulation, opendr_tuning as tuning,
+    opendr_vision as vision, opendr_zoo as zoo,
 };
-#[cfg(feature = "lerobot")]
-pub use opendr_lerobot as lerobot;
 #[cfg(feature = "ros")]
 pub use {opendr_recordings as bags, opendr_ros as ros};

@@ -40,6 +40,7 @@ use opendr_hands::{
     gesture_recognition::{HandGesture, KeypointGesture},
     hand_pose_estimation::HandPose,
 };
+use opendr_imitation::{ActLearner, DiffusionPolicyLearner};
 use opendr_manipulation::SingleDemoGrasp;
 #[cfg(feature = "multimodal")]
 use opendr_multimodal::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
@@ -56,7 +57,6 @@ use opendr_pose::{
 use opendr_rl::prior::{
     ResidualPpoLearner, ResidualSacLearner, ResidualTd3Learner, ShapedPpoLearner, ShapedSacLearner,
 };
-use opendr_imitation::{ActLearner, DiffusionPolicyLearner};
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 #[cfg(feature = "segmentation")]
 use opendr_segmentation::{

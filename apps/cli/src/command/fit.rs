@@ -20,6 +20,7 @@ Examples:
   opendr fit LEARNER/VARIANT labelled/                         fine-tune a pretrained model
   opendr fit LEARNER photos/ --teacher nanodet                 distil the predictions of another learner
   opendr fit ppo --env CartPole-v1                             train a policy in an environment
+  opendr fit act pushes/                                       imitate demonstrations (opendr sim record)
   opendr fit active_face_recognition --env SphereView-Face-v1  train a recogniser and the camera's motion
   opendr fit LEARNER --help                                    list the learner's flags, such as --epochs
 
@@ -152,7 +153,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     if environment_flags::is_policy(entry) {
         if entry.capabilities.fit && matches.contains_id(dataset_flags::DATASET) {
             let demonstrations = dataset_flags::external(matches);
-            let fitted = opendr::fit_demonstrations(learner.as_mut(), entry, &demonstrations, &options, &bar)?;
+            let data = FitData::from(DatasetRef::External(&demonstrations));
+            let fitted = opendr::fit(learner.as_mut(), entry, data, &options, &bar)?;
             return print_fitted(&fitted, matches, &bar);
         }
         let source = environment_flags::source(matches, Some(learner.as_ref()))?;

@@ -10,6 +10,7 @@ from opendr._native_arguments import Table
 from opendr._native_base import NativeBase
 from opendr._native_learner import NativeLearner
 from opendr._native_learner_active import NativeLearnerActive
+from opendr._native_learner_imitation import NativeLearnerImitation
 from opendr._native_learner_rl import NativeLearnerRL
 from opendr._reference import constructor, document, params_annotations
 from opendr._upstream.arguments import methods
@@ -63,7 +64,9 @@ def _parent(entry: Table, row: Row) -> type[NativeBase]:
     if not entry["fit_in"]:
         return NativeLearner
     acts = any(output["type"] == "RlTarget" for output in entry["outputs"])
-    return NativeLearnerRL if acts else NativeLearnerActive
+    if not acts:
+        return NativeLearnerActive
+    return NativeLearnerImitation if entry["fit"] else NativeLearnerRL
 
 
 class _Classes(Parameter):

@@ -5,15 +5,16 @@ use std::path::PathBuf;
 use opendr_control::{MobileRl, MobileRlFitParams, MultiObjectSearchRl, MultiObjectSearchRlFitParams};
 use opendr_engine::Device;
 use opendr_engine::environment::{Environment as _, ResetOptions};
-use opendr_engine::learner::{FitJob, Handle, Learner as _, LearnerRl};
+use opendr_engine::learner::{FitJob, Handle, Learner, LearnerRl};
 use opendr_engine::model::Model;
 use opendr_rl::{POLICY_FILE, observation_from_numbers};
 use opendr_simulation::{RegisteredSource, make};
 
 /// Trains with this number of threads; returns the policy and an action.
-fn trained<L: LearnerRl>(id: &str, params: &L::FitParams, name: &str) -> (Vec<u8>, Vec<f32>)
+fn trained<L>(id: &str, params: &L::FitParams, name: &str) -> (Vec<u8>, Vec<f32>)
 where
-    L: for<'a> opendr_engine::learner::Learner<
+    L: LearnerRl
+        + for<'a> Learner<
             Input<'a> = &'a opendr_engine::data::Observation,
             Target = opendr_engine::target::RlTarget,
         >,

@@ -9,7 +9,7 @@ use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::{Error, Progress, Result, Statistics};
 use opendr_evaluation::DatasetOpener;
 
-use super::{FitOptions, Fitted, check_fit, finish, run_folder};
+use super::{FitData, FitOptions, Fitted, check_fit, finish, run_folder};
 use crate::training_environment;
 
 /// Environments in which a policy is trained and evaluated.
@@ -44,26 +44,30 @@ pub fn fit_policy(
     finish(fitted, progress)
 }
 
-/// Trains a policy on demonstrations: a data set of LeRobot. The validation data of the options measure the actions that it predicts.
+/// Trains a policy on demonstrations, a data set of its own format. Validation data measure the error of its actions.
 ///
 /// # Errors
 /// As [`fit_policy`], and errors of the data set.
-pub fn fit_demonstrations(
+pub(super) fn fit_demonstrations(
     learner: &mut dyn AnyLearner,
     entry: &'static Entry,
-    dataset: &ExternalDataset,
+    data: FitData<'_>,
     options: &FitOptions,
     progress: &dyn Progress,
 ) -> Result<Fitted> {
+    let FitData { dataset, val_dataset, teacher } = data;
+    if teacher.is_some() {
+        return Err(Error::unsupported("a policy learns from demonstrations, not from another learner"));
+    }
     let FitOptions { val, val_format, .. } = options;
     check_options(&FitOptions { val: None, val_format: None, ..options.clone() })?;
-    let format = val_format.as_deref().unwrap_or("auto");
-    let val = val.as_ref().map(|path| ExternalDataset::new(path, format));
+    let external =
+        val.as_ref().map(|path| ExternalDataset::new(path, val_format.as_deref().unwrap_or("auto")));
+    let val_dataset = val_dataset.or(external.as_ref().map(DatasetRef::External));
     let fitted = fit_with(learner, entry, options, progress, |learner, job| {
-        learner.fit(&options.params, dataset.into(), val.as_ref().map(DatasetRef::External), job)
+        learner.fit(&options.params, dataset, val_dataset, job)
     })?;
-    let path = dataset.path().display().to_string();
-    finish(Fitted { dataset: options.name.clone().unwrap_or(path), ..fitted }, progress)
+    finish(Fitted { dataset: name_of(dataset, options), ..fitted }, progress)
 }
 
 /// Trains a learner of active perception: perception on a data set, and the camera motion in environments from `env`.
@@ -82,22 +86,26 @@ pub fn fit_active(
     let opener = DatasetOpener::new(entry, true, &problems, progress);
     let samples = opener.open_training(dataset, options.split.as_deref())?;
     let samples = Subset::first(samples, options.limit.unwrap_or(usize::MAX));
-    let path = match dataset {
-        DatasetRef::External(external) => external.path().display().to_string(),
-        DatasetRef::Iterator(_) => String::new(),
-    };
     let fitted = fit_with(learner, entry, options, progress, |learner, job| {
         let dataset = DatasetRef::Iterator(&samples);
         learner.fit_active(&options.params, Some(dataset), env, job)
     })?;
     let fitted = Fitted {
-        dataset: options.name.clone().unwrap_or(path),
+        dataset: name_of(dataset, options),
         samples: samples.len(),
         skipped: problems.count(),
         problems: problems.list(),
         ..fitted
     };
     finish(fitted, progress)
+}
+
+/// Returns the name of a data set in the report.
+fn name_of(dataset: DatasetRef<'_>, options: &FitOptions) -> String {
+    options.name.clone().unwrap_or_else(|| match dataset {
+        DatasetRef::External(external) => external.path().display().to_string(),
+        DatasetRef::Iterator(_) => String::new(),
+    })
 }
 
 /// Trains by `train`, and returns what is to be reported.

@@ -10,14 +10,14 @@ use std::time::Instant;
 
 use opendr_datasets::Problems;
 use opendr_engine::dataset::{DatasetIterator, DatasetRef, ExternalDataset, Subset};
-use opendr_engine::learner::{AnyLearner, Entry, FitJob};
+use opendr_engine::learner::{AnyLearner, Capabilities, Entry, FitJob};
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Device, Error, Progress, Result, Statistics};
 use opendr_evaluation::{DatasetOpener, Distillation, Samples, Teacher, annotation_type};
 use opendr_inference as inference;
 
 pub use fitted::Fitted;
-pub use in_environment::{FitEnvironments, fit_active, fit_demonstrations, fit_policy};
+pub use in_environment::{FitEnvironments, fit_active, fit_policy};
 pub use options::FitOptions;
 
 use crate::{learner_with, registry};
@@ -60,11 +60,17 @@ pub fn fit(
     progress: &dyn Progress,
 ) -> Result<Fitted> {
     let begun = Instant::now();
-    if entry.capabilities.fit_in {
-        let class = entry.spec.class;
-        return Err(Error::unsupported(format!(
-            "{class} trains in environments; give an environment instead of a data set"
-        )));
+    match entry.capabilities {
+        Capabilities { fit_in: true, fit: false, .. } => {
+            let class = entry.spec.class;
+            return Err(Error::unsupported(format!(
+                "{class} trains in environments; give an environment instead of a data set"
+            )));
+        }
+        Capabilities { fit_in: true, .. } => {
+            return in_environment::fit_demonstrations(learner, entry, data, options, progress);
+        }
+        Capabilities { .. } => {}
     }
     check_fit(entry, &options.params)?;
     let output = options.output_folder(entry.spec.name)?;

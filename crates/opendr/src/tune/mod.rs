@@ -55,7 +55,7 @@ pub fn tune(
     let begun = Instant::now();
     let able = match data {
         TuneData::Environment { .. } => entry.capabilities.fit_in,
-        TuneData::Dataset { .. } => entry.capabilities.fit,
+        TuneData::Dataset { .. } => entry.capabilities.fit && !entry.capabilities.fit_in,
         TuneData::Inference { .. } => true,
     };
     if !able {

@@ -1,4 +1,4 @@
-use super::vector::{Vector2, norm, plus};
+use super::vector::{Vector2, norm, plus, turned};
 use super::*;
 
 fn block(mass: f64, friction: f64) -> Body {
@@ -101,7 +101,7 @@ fn a_gripper_holds_what_it_closes_on() {
     let grip = |world: &World| {
         let Pose { place, angle } = world.bodies[0].pose;
         let back = crate::sine_cosine::sine_cosine(-angle);
-        super::vector::turned(plus(world.bodies[1].pose.place, place, -1.0), back)
+        turned(plus(world.bodies[1].pose.place, place, -1.0), back)
     };
     let before = grip(&world);
     world.bodies[0].drive.target = [0.1, 0.1, 0.3, -0.1];
