@@ -1,4 +1,4 @@
-//! Classical controllers, policies of robots, and online fine-tuning of policies with guard, monitor and rollback.
+//! Classical controllers, policies of robots, online fine-tuning with guard, monitor and rollback.
 //!
 //! [`Pid`] and [`Lqr`] are feedback laws for one axis and for a linear model. [`TrackingPid`] and [`TrackingLqr`] run them on the
 //! observations of an environment, whose places a [`TrackingTask`](opendr_engine::environment::TrackingTask) states, and

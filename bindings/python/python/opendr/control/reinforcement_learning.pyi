@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 from opendr._input_value import PathLike
+from opendr._native_learner_imitation import NativeLearnerImitation
 from opendr._native_learner_rl import NativeLearnerRL
 from opendr.engine.data import Observation
 from opendr.engine.target import RlTarget
@@ -768,3 +769,286 @@ class ShapedSacLearner(NativeLearnerRL):
     @overload
     def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, progress: bool = ..., deterministic: bool = ...) -> Iterator[RlTarget]: ...
     def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, env_params: Optional[dict[str, Any]] = ..., out: Optional[PathLike] = ..., resume: bool = ..., prior: str = ..., hold: int = ..., command_log_std: float = ..., learning_rate: float = ..., buffer_size: int = ..., learning_starts: int = ..., starts_with_policy: bool = ..., actor_starts: int = ..., batch_size: int = ..., tau: float = ..., gamma: float = ..., train_freq: int = ..., gradient_steps: Optional[int] = ..., norm_obs: bool = ..., clip_obs: float = ..., seed: int = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., ent_coef: Optional[float] = ..., ent_coef_init: float = ..., target_entropy: Optional[float] = ..., target_update_interval: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...
+
+class MobileRLLearner(NativeLearnerRL):
+    """Mobile manipulation: moves the base so that the arm can follow a planned motion of its gripper.
+
+    Task: reinforcement_learning. ``infer`` takes:
+
+        observation: Observation.
+
+    and returns: RlTarget.
+
+    Args:
+        deterministic: Whether the policy takes its most likely actions instead of sampling. (default True; live:
+            may change while running, and for one call of infer)
+        seed: Seed of sampled actions, at the start of a stream. (default 0)
+        shield: Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the
+            rules); none disables the shield. (default None)
+        shield_prior: Name of the prior that acts instead, in its newest version; none means the policy's own
+            prior. (default None)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        learning_rate: Learning rate of Adam. (default 0.0003; 0 to 1)
+        learning_rate_schedule: Schedule of the learning rate. (default 'linear'; one of 'constant', 'linear')
+        n_steps: Steps of each environment between two updates. (default 256; 1 to 1e+06)
+        batch_size: Steps per minibatch. (default 512; 1 to 1e+06)
+        n_epochs: Passes over the collected steps per update. (default 5; 1 to 1000)
+        gamma: Discount factor. (default 0.99; 0 to 1)
+        gae_lambda: Lambda of generalised advantage estimation: 0 for one-step, 1 for Monte Carlo estimates.
+            (default 0.95; 0 to 1)
+        clip_range: Clipping range of the probability ratio. (default 0.2; 0 to 10)
+        clip_range_schedule: Schedule of the clipping range. (default 'constant'; one of 'constant', 'linear')
+        clip_range_vf: Clipping range of the values; none means no clipping. It depends on the scale of the
+            rewards. (default None; 0 to 1e+09)
+        normalize_advantage: Whether the advantages of a minibatch are normalised to mean 0 and standard deviation
+            1. (default True)
+        ent_coef: Weight of the entropy in the loss. (default 0.0; 0 to 10)
+        vf_coef: Weight of the value loss. (default 0.5; 0 to 100)
+        max_grad_norm: Maximum norm of the gradients. (default 0.5; 0 to 1e+09)
+        target_kl: KL divergence at 1.5 times which an update is stopped; none means no limit. (default None; 0 to
+            1e+09)
+        net_arch: Units of the hidden layers. (default [64, 64]; 1 to 4096)
+        activation_fn: Activation function of the hidden layers. (default 'tanh'; one of 'tanh', 'relu')
+        image_network: Network for image observations, before the hidden layers. (default 'small'; one of 'small',
+            'nature', 'flat')
+        gru_size: Units of a gated recurrent unit before the hidden layers, for policies with memory; none means
+            no recurrent unit. (default None; 1 to 4096)
+        sequence_length: Steps per training sequence of a recurrent policy; a sequence lies in one minibatch. None
+            means as many as fit into a minibatch. Other policies train on single steps. (default None; 1 to
+            1e+06)
+        net_arch_vf: Units of the hidden layers of the value network; none means those of the policy. (default
+            None; 1 to 4096)
+        ortho_init: Whether weights are initialised orthogonally, else by PyTorch's default. (default True)
+        actor_starts: Steps of all environments before the actor is trained; only the critic is trained until
+            then. (default 0; 0 to 1e+09)
+        log_std_init: Initial log standard deviation of continuous actions. (default -1.0; -20 to 20)
+        norm_obs: Whether observations are normalised by the running mean and variance of the training. (default
+            True)
+        norm_reward: Whether rewards are divided by the standard deviation of the discounted return. (default
+            True)
+        clip_obs: Normalised observations are clipped to plus and minus this value. (default 10.0; 0 to 1e+09)
+        clip_reward: Normalised rewards are clipped to plus and minus this value. (default 10.0; 0 to 1e+09)
+        ik_fail_limit: Failures of the inverse kinematics after which an episode of the training terminates, as in
+            OpenDR. (default 20; 1 to 100000)
+        base_noise: Standard deviation of the noise on the motion of the base in a step of the training, in metres
+            and radians. (default 0.0; 0 to 0.1)
+        total_timesteps: Steps of a whole training, over all environments. (default 400000; 1 to 2e+09; in OpenDR
+            iters)
+        n_envs: Number of parallel environments. (default 16; 1 to 65536)
+        num_workers: Threads for environments and learning; results do not depend on them. (default 2; 1 to 256)
+        eval_freq: Steps between two evaluations of the policy; 0 evaluates at the end only. (default 0; 0 to
+            1e+09)
+        n_eval_episodes: Episodes per evaluation. (default 100; 1 to 1e+06)
+        checkpoint_after_iter: Steps between two checkpoints. (default 20000; 1 to 1e+09)
+        checkpoints_kept: Number of checkpoints that are kept. (default 2; 1 to 1000)
+        preset: Whether parameters left at their defaults take the values of the environment's preset, if there is
+            one. (default True)
+    """
+
+    deterministic: bool
+    seed: int
+    shield: Optional[str]
+    shield_prior: Optional[str]
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, learning_rate: float = ..., learning_rate_schedule: Literal['constant', 'linear'] = ..., n_steps: int = ..., n_epochs: int = ..., gamma: float = ..., gae_lambda: float = ..., clip_range: float = ..., clip_range_schedule: Literal['constant', 'linear'] = ..., clip_range_vf: Optional[float] = ..., normalize_advantage: bool = ..., ent_coef: float = ..., vf_coef: float = ..., max_grad_norm: float = ..., target_kl: Optional[float] = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., sequence_length: Optional[int] = ..., net_arch_vf: Optional[list[Any]] = ..., ortho_init: bool = ..., actor_starts: int = ..., log_std_init: float = ..., norm_obs: bool = ..., norm_reward: bool = ..., clip_obs: float = ..., clip_reward: float = ..., seed: int = ..., ik_fail_limit: int = ..., base_noise: float = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ..., shield: Optional[str] = ..., shield_prior: Optional[str] = ...) -> None: ...
+    @overload
+    def infer(self, observation: Union[Observation, ArrayLike], *, deterministic: bool = ...) -> RlTarget: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, observation: Sequence[Union[Observation, ArrayLike]], *, progress: bool = ..., deterministic: bool = ...) -> list[RlTarget]: ...
+    @overload
+    def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, progress: bool = ..., deterministic: bool = ...) -> Iterator[RlTarget]: ...
+    def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, env_params: Optional[dict[str, Any]] = ..., out: Optional[PathLike] = ..., resume: bool = ..., learning_rate: float = ..., learning_rate_schedule: Literal['constant', 'linear'] = ..., n_steps: int = ..., batch_size: int = ..., n_epochs: int = ..., gamma: float = ..., gae_lambda: float = ..., clip_range: float = ..., clip_range_schedule: Literal['constant', 'linear'] = ..., clip_range_vf: Optional[float] = ..., normalize_advantage: bool = ..., ent_coef: float = ..., vf_coef: float = ..., max_grad_norm: float = ..., target_kl: Optional[float] = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., sequence_length: Optional[int] = ..., net_arch_vf: Optional[list[Any]] = ..., ortho_init: bool = ..., actor_starts: int = ..., log_std_init: float = ..., norm_obs: bool = ..., norm_reward: bool = ..., clip_obs: float = ..., clip_reward: float = ..., seed: int = ..., ik_fail_limit: int = ..., base_noise: float = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...
+
+class MultiObjectSearchRLLearner(NativeLearnerRL):
+    """Multi-object search: chooses where a robot drives next to find objects in a flat.
+
+    Task: reinforcement_learning. ``infer`` takes:
+
+        observation: Observation.
+
+    and returns: RlTarget.
+
+    Args:
+        deterministic: Whether the policy takes its most likely actions instead of sampling. (default True; live:
+            may change while running, and for one call of infer)
+        seed: Seed of sampled actions, at the start of a stream. (default 0)
+        shield: Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the
+            rules); none disables the shield. (default None)
+        shield_prior: Name of the prior that acts instead, in its newest version; none means the policy's own
+            prior. (default None)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        learning_rate: Learning rate of Adam. (default 0.0003; 0 to 1)
+        learning_rate_schedule: Schedule of the learning rate. (default 'constant'; one of 'constant', 'linear')
+        n_steps: Steps of each environment between two updates. (default 128; 1 to 1e+06)
+        batch_size: Steps per minibatch. (default 256; 1 to 1e+06)
+        n_epochs: Passes over the collected steps per update. (default 4; 1 to 1000)
+        gamma: Discount factor. (default 0.99; 0 to 1)
+        gae_lambda: Lambda of generalised advantage estimation: 0 for one-step, 1 for Monte Carlo estimates.
+            (default 0.95; 0 to 1)
+        clip_range: Clipping range of the probability ratio. (default 0.2; 0 to 10)
+        clip_range_schedule: Schedule of the clipping range. (default 'constant'; one of 'constant', 'linear')
+        clip_range_vf: Clipping range of the values; none means no clipping. It depends on the scale of the
+            rewards. (default None; 0 to 1e+09)
+        normalize_advantage: Whether the advantages of a minibatch are normalised to mean 0 and standard deviation
+            1. (default True)
+        ent_coef: Weight of the entropy in the loss. (default 0.005; 0 to 10)
+        vf_coef: Weight of the value loss. (default 0.5; 0 to 100)
+        max_grad_norm: Maximum norm of the gradients. (default 0.5; 0 to 1e+09)
+        target_kl: KL divergence at 1.5 times which an update is stopped; none means no limit. (default None; 0 to
+            1e+09)
+        net_arch: Units of the hidden layers. (default [64, 64]; 1 to 4096)
+        activation_fn: Activation function of the hidden layers. (default 'tanh'; one of 'tanh', 'relu')
+        image_network: Network for image observations, before the hidden layers. (default 'small'; one of 'small',
+            'nature', 'flat')
+        gru_size: Units of a gated recurrent unit before the hidden layers, for policies with memory; none means
+            no recurrent unit. (default None; 1 to 4096)
+        sequence_length: Steps per training sequence of a recurrent policy; a sequence lies in one minibatch. None
+            means as many as fit into a minibatch. Other policies train on single steps. (default None; 1 to
+            1e+06)
+        net_arch_vf: Units of the hidden layers of the value network; none means those of the policy. (default
+            None; 1 to 4096)
+        ortho_init: Whether weights are initialised orthogonally, else by PyTorch's default. (default True)
+        actor_starts: Steps of all environments before the actor is trained; only the critic is trained until
+            then. (default 0; 0 to 1e+09)
+        log_std_init: Initial log standard deviation of continuous actions. (default 0.0; -20 to 20)
+        norm_obs: Whether observations are normalised by the running mean and variance of the training. (default
+            True)
+        norm_reward: Whether rewards are divided by the standard deviation of the discounted return. (default
+            False)
+        clip_obs: Normalised observations are clipped to plus and minus this value. (default 10.0; 0 to 1e+09)
+        clip_reward: Normalised rewards are clipped to plus and minus this value. (default 10.0; 0 to 1e+09)
+        total_timesteps: Steps of a whole training, over all environments. (default 300000; 1 to 2e+09; in OpenDR
+            iters)
+        n_envs: Number of parallel environments. (default 16; 1 to 65536)
+        num_workers: Threads for environments and learning; results do not depend on them. (default 2; 1 to 256)
+        eval_freq: Steps between two evaluations of the policy; 0 evaluates at the end only. (default 0; 0 to
+            1e+09)
+        n_eval_episodes: Episodes per evaluation. (default 100; 1 to 1e+06)
+        checkpoint_after_iter: Steps between two checkpoints. (default 20000; 1 to 1e+09)
+        checkpoints_kept: Number of checkpoints that are kept. (default 2; 1 to 1000)
+        preset: Whether parameters left at their defaults take the values of the environment's preset, if there is
+            one. (default True)
+    """
+
+    deterministic: bool
+    seed: int
+    shield: Optional[str]
+    shield_prior: Optional[str]
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, learning_rate: float = ..., learning_rate_schedule: Literal['constant', 'linear'] = ..., n_steps: int = ..., n_epochs: int = ..., gamma: float = ..., gae_lambda: float = ..., clip_range: float = ..., clip_range_schedule: Literal['constant', 'linear'] = ..., clip_range_vf: Optional[float] = ..., normalize_advantage: bool = ..., ent_coef: float = ..., vf_coef: float = ..., max_grad_norm: float = ..., target_kl: Optional[float] = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., sequence_length: Optional[int] = ..., net_arch_vf: Optional[list[Any]] = ..., ortho_init: bool = ..., actor_starts: int = ..., log_std_init: float = ..., norm_obs: bool = ..., norm_reward: bool = ..., clip_obs: float = ..., clip_reward: float = ..., seed: int = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ..., shield: Optional[str] = ..., shield_prior: Optional[str] = ...) -> None: ...
+    @overload
+    def infer(self, observation: Union[Observation, ArrayLike], *, deterministic: bool = ...) -> RlTarget: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, observation: Sequence[Union[Observation, ArrayLike]], *, progress: bool = ..., deterministic: bool = ...) -> list[RlTarget]: ...
+    @overload
+    def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, progress: bool = ..., deterministic: bool = ...) -> Iterator[RlTarget]: ...
+    def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, env_params: Optional[dict[str, Any]] = ..., out: Optional[PathLike] = ..., resume: bool = ..., learning_rate: float = ..., learning_rate_schedule: Literal['constant', 'linear'] = ..., n_steps: int = ..., batch_size: int = ..., n_epochs: int = ..., gamma: float = ..., gae_lambda: float = ..., clip_range: float = ..., clip_range_schedule: Literal['constant', 'linear'] = ..., clip_range_vf: Optional[float] = ..., normalize_advantage: bool = ..., ent_coef: float = ..., vf_coef: float = ..., max_grad_norm: float = ..., target_kl: Optional[float] = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., sequence_length: Optional[int] = ..., net_arch_vf: Optional[list[Any]] = ..., ortho_init: bool = ..., actor_starts: int = ..., log_std_init: float = ..., norm_obs: bool = ..., norm_reward: bool = ..., clip_obs: float = ..., clip_reward: float = ..., seed: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...
+
+class ActLearner(NativeLearnerImitation):
+    """Action chunking with transformers: imitates demonstrations, several actions per prediction.
+
+    Task: reinforcement_learning. ``infer`` takes:
+
+        observation: Observation.
+
+    and returns: RlTarget.
+
+    Args:
+        temporal_ensemble: Whether each action is the weighted mean of all predictions for its step, with one
+            prediction per step. (default True)
+        temporal_ensemble_coeff: Decay of the weights of newer predictions: `exp(-coefficient i)`, where i is 0
+            for the oldest. (default 0.01; -10 to 10)
+        n_action_steps: Actions of a chunk that are executed before the next prediction, without temporal
+            ensemble. (default 10; 1 to 1000)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        chunk_size: Actions per prediction. (default 20; 1 to 1000)
+        dim_model: Numbers per token. (default 128; 4 to 2048)
+        n_heads: Heads of the attention; they divide `dim_model`. (default 4; 1 to 64)
+        dim_feedforward: Units of the layers between attentions. (default 256; 1 to 8192)
+        n_encoder_layers: Blocks of the encoder of observation and latent variable. (default 2; 1 to 24)
+        n_decoder_layers: Blocks of the decoder of actions. (default 2; 1 to 24)
+        use_vae: Whether a variational encoder of the demonstrated actions gives the latent variable in training.
+            (default True)
+        latent_dim: Numbers of the latent variable. (default 16; 1 to 1024)
+        n_vae_encoder_layers: Blocks of the variational encoder. (default 2; 1 to 24)
+        kl_weight: Weight of the Kullback-Leibler divergence in the loss. (default 10.0; 0 to 1000)
+        training_steps: Steps of the optimiser. (default 10000; 1 to 1e+08; in OpenDR iters)
+        batch_size: Windows of demonstrations per step. (default 64; 1 to 65536)
+        learning_rate: Largest learning rate: it rises from 0 and falls to 0 by a cosine. (default 0.0005; 0 to 1)
+        warmup_steps: Steps in which the learning rate rises. (default 500; 0 to 1e+06)
+        max_grad_norm: Largest norm of the gradient. (default 10.0; 0 to 1e+06)
+        num_workers: Threads of the training; results do not depend on them. (default 2; 1 to 256)
+        checkpoint_after_iter: Steps between two checkpoints. (default 2000; 1 to 1e+09)
+        seed: Seed of parameters, windows and noise. (default 0)
+        demonstration_prior: Name of the prior that demonstrates, in its newest version; a training on a data set
+            needs none. (default None)
+        demonstration_episodes: Episodes that the prior demonstrates. (default 100; 1 to 1e+06)
+        successful_demonstrations: Whether demonstrations that fail are left out. (default True)
+        n_eval_episodes: Episodes of the evaluation after the training; 0 evaluates none. (default 50; 0 to 1e+06)
+    """
+
+    temporal_ensemble: bool
+    temporal_ensemble_coeff: float
+    n_action_steps: int
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, chunk_size: int = ..., dim_model: int = ..., n_heads: int = ..., dim_feedforward: int = ..., n_encoder_layers: int = ..., n_decoder_layers: int = ..., use_vae: bool = ..., latent_dim: int = ..., n_vae_encoder_layers: int = ..., kl_weight: float = ..., training_steps: int = ..., learning_rate: float = ..., warmup_steps: int = ..., max_grad_norm: float = ..., num_workers: int = ..., seed: int = ..., demonstration_prior: Optional[str] = ..., demonstration_episodes: int = ..., successful_demonstrations: bool = ..., n_eval_episodes: int = ..., temporal_ensemble: bool = ..., temporal_ensemble_coeff: float = ..., n_action_steps: int = ...) -> None: ...
+    @overload
+    def infer(self, observation: Union[Observation, ArrayLike]) -> RlTarget: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, observation: Sequence[Union[Observation, ArrayLike]], *, progress: bool = ...) -> list[RlTarget]: ...
+    @overload
+    def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, progress: bool = ...) -> Iterator[RlTarget]: ...
+    def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, dataset: Optional[ExternalDataset] = ..., val_dataset: Optional[ExternalDataset] = ..., env_params: Optional[dict[str, Any]] = ..., out: Optional[PathLike] = ..., resume: bool = ..., chunk_size: int = ..., dim_model: int = ..., n_heads: int = ..., dim_feedforward: int = ..., n_encoder_layers: int = ..., n_decoder_layers: int = ..., use_vae: bool = ..., latent_dim: int = ..., n_vae_encoder_layers: int = ..., kl_weight: float = ..., training_steps: int = ..., iters: int = ..., batch_size: int = ..., learning_rate: float = ..., warmup_steps: int = ..., max_grad_norm: float = ..., num_workers: int = ..., checkpoint_after_iter: int = ..., seed: int = ..., demonstration_prior: Optional[str] = ..., demonstration_episodes: int = ..., successful_demonstrations: bool = ..., n_eval_episodes: int = ...) -> dict[str, Any]: ...
+
+class DiffusionPolicyLearner(NativeLearnerImitation):
+    """Diffusion policy: imitates demonstrations that reach their goal in several ways.
+
+    Task: reinforcement_learning. ``infer`` takes:
+
+        observation: Observation.
+
+    and returns: RlTarget.
+
+    Args:
+        num_inference_steps: Denoising steps per prediction (DDIM). (default 10; 1 to 1000)
+        n_action_steps: Actions of a prediction that are executed before the next one. (default 8; 1 to 1000)
+        seed: Seed of the noise, at the start of a stream. (default 0)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        n_obs_steps: Observations that the prediction depends on, the current one last. (default 2; 1 to 64)
+        horizon: Actions per prediction, from that of the oldest observation on. (default 16; 1 to 1000)
+        num_train_timesteps: Noise levels in training. (default 100; 2 to 10000)
+        diffusion_step_embed_dim: Numbers of the embedding of the noise level; even. (default 64; 2 to 1024)
+        cond_dim: Numbers of the condition that observations and noise level are encoded to. (default 256; 1 to
+            4096)
+        width: Width of the blocks of the denoiser. (default 512; 1 to 8192)
+        n_blocks: Blocks of the denoiser. (default 3; 1 to 32)
+        training_steps: Steps of the optimiser. (default 10000; 1 to 1e+08; in OpenDR iters)
+        batch_size: Windows of demonstrations per step. (default 64; 1 to 65536)
+        learning_rate: Largest learning rate: it rises from 0 and falls to 0 by a cosine. (default 0.0005; 0 to 1)
+        warmup_steps: Steps in which the learning rate rises. (default 500; 0 to 1e+06)
+        max_grad_norm: Largest norm of the gradient. (default 10.0; 0 to 1e+06)
+        num_workers: Threads of the training; results do not depend on them. (default 2; 1 to 256)
+        checkpoint_after_iter: Steps between two checkpoints. (default 2000; 1 to 1e+09)
+        demonstration_prior: Name of the prior that demonstrates, in its newest version; a training on a data set
+            needs none. (default None)
+        demonstration_episodes: Episodes that the prior demonstrates. (default 100; 1 to 1e+06)
+        successful_demonstrations: Whether demonstrations that fail are left out. (default True)
+        n_eval_episodes: Episodes of the evaluation after the training; 0 evaluates none. (default 50; 0 to 1e+06)
+    """
+
+    num_inference_steps: int
+    n_action_steps: int
+    seed: int
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, n_obs_steps: int = ..., horizon: int = ..., num_train_timesteps: int = ..., diffusion_step_embed_dim: int = ..., cond_dim: int = ..., width: int = ..., n_blocks: int = ..., training_steps: int = ..., learning_rate: float = ..., warmup_steps: int = ..., max_grad_norm: float = ..., num_workers: int = ..., seed: int = ..., demonstration_prior: Optional[str] = ..., demonstration_episodes: int = ..., successful_demonstrations: bool = ..., n_eval_episodes: int = ..., num_inference_steps: int = ..., n_action_steps: int = ...) -> None: ...
+    @overload
+    def infer(self, observation: Union[Observation, ArrayLike]) -> RlTarget: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, observation: Sequence[Union[Observation, ArrayLike]], *, progress: bool = ...) -> list[RlTarget]: ...
+    @overload
+    def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, progress: bool = ...) -> Iterator[RlTarget]: ...
+    def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, dataset: Optional[ExternalDataset] = ..., val_dataset: Optional[ExternalDataset] = ..., env_params: Optional[dict[str, Any]] = ..., out: Optional[PathLike] = ..., resume: bool = ..., n_obs_steps: int = ..., horizon: int = ..., num_train_timesteps: int = ..., diffusion_step_embed_dim: int = ..., cond_dim: int = ..., width: int = ..., n_blocks: int = ..., training_steps: int = ..., iters: int = ..., batch_size: int = ..., learning_rate: float = ..., warmup_steps: int = ..., max_grad_norm: float = ..., num_workers: int = ..., checkpoint_after_iter: int = ..., seed: int = ..., demonstration_prior: Optional[str] = ..., demonstration_episodes: int = ..., successful_demonstrations: bool = ..., n_eval_episodes: int = ...) -> dict[str, Any]: ...
