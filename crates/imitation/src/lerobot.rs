@@ -10,7 +10,7 @@ use opendr_rl::SpaceRecord;
 use serde::{Deserialize, Serialize};
 
 use crate::demonstrations::{DemonstrationSet, Episode};
-use crate::learner::Source;
+use crate::source::Source;
 
 /// Names of the features.
 const STATE: &str = "observation.state";

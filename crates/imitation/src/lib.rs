@@ -15,6 +15,7 @@ mod lerobot;
 mod method;
 mod parts;
 mod policy;
+mod source;
 mod training;
 mod transformer;
 

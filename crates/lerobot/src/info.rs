@@ -90,7 +90,7 @@ impl Feature {
         })
     }
 
-    /// Returns whether each frame has numbers, as opposed to a picture or text.
+    /// Returns whether each frame has numbers, as opposed to an image or text.
     pub fn is_numeric(&self) -> bool {
         !matches!(self.dtype.as_str(), "video" | "image" | "string")
     }

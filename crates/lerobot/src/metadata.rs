@@ -8,8 +8,10 @@ use serde_json::{Map, Value};
 
 use crate::record::{EpisodeRecord, VideoSegment};
 use crate::table_writer::TableWriter;
-use crate::writer::CHUNK;
 use crate::{Column, FeatureStatistics, Info, Values};
+
+/// Files per folder, and the sizes from which on a new file begins, in MB: LeRobot's defaults.
+pub(crate) const CHUNK: usize = 1000;
 
 /// Returns the columns of the table of episodes.
 pub(crate) fn episode_columns(

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use opendr_engine::{Error, Result, ResultExt as _};
 use serde_json::Value;
 
-use crate::metadata::{episode_columns, tasks_index, write_json, write_table};
+use crate::metadata::{CHUNK, episode_columns, tasks_index, write_json, write_table};
 use crate::record::{EpisodeRecord, VideoSegment};
 use crate::table::Table;
 use crate::table_writer::TableWriter;
@@ -39,8 +39,6 @@ pub struct LeRobotWriter {
 
 const DATA: &str = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet";
 const VIDEO: &str = "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4";
-/// Files per folder, and the sizes from which on a new file begins, in MB: LeRobot's defaults.
-pub(crate) const CHUNK: usize = 1000;
 const DATA_MB: u64 = 100;
 const VIDEO_MB: u64 = 200;
 /// Features that every data set has.

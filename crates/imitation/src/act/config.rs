@@ -2,6 +2,8 @@
 
 use opendr_engine::params::Params;
 
+use crate::transformer::TransformerSizes;
+
 /// Settings of the network of ACT. Names as in LeRobot; the network is smaller, since observations are states, not images.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct ActConfig {
@@ -35,6 +37,13 @@ pub struct ActConfig {
     /// Weight of the Kullback-Leibler divergence in the loss.
     #[param(default = 10.0, range = 0.0..=1000.0)]
     pub kl_weight: f32,
+}
+
+impl ActConfig {
+    /// Returns the sizes of a transformer of this number of layers.
+    pub(super) fn sizes(&self, layers: usize) -> TransformerSizes {
+        TransformerSizes { size: self.dim_model, heads: self.n_heads, hidden: self.dim_feedforward, layers }
+    }
 }
 
 /// Parameters of ACT at inference.

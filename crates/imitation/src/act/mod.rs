@@ -17,7 +17,6 @@ use posterior::{Posterior, PosteriorTape};
 use crate::affine::Affine;
 use crate::batch::{Batch, Window};
 use crate::method::{Acting, ChunkMethod, Optimisation};
-use crate::transformer::TransformerSizes;
 
 /// ACT: a transformer that predicts the next actions from an observation and a latent variable, which stands for the style of a
 /// demonstration: a variational encoder gives it in training, and it is zero when the policy acts.
@@ -39,11 +38,6 @@ pub struct ActTape {
     latents: Vec<f32>,
     dlatents: Vec<f32>,
     doutput: Vec<f32>,
-}
-
-/// Returns the sizes of a transformer of ACT.
-fn sizes(config: &ActConfig, layers: usize) -> TransformerSizes {
-    TransformerSizes { size: config.dim_model, heads: config.n_heads, hidden: config.dim_feedforward, layers }
 }
 
 #[allow(private_interfaces, reason = "as the trait")]

@@ -3,8 +3,8 @@
 use opendr_engine::{Random, Result};
 use opendr_kernels::{Activation, Compute, Dense, Embedding, Sequences};
 
+use super::ActConfig;
 use super::posterior::places;
-use super::{ActConfig, sizes};
 use crate::parts::{split, split_mut};
 use crate::transformer::{Memory, Transformer, TransformerTape, initialise_dense, initialise_vectors};
 
@@ -46,9 +46,9 @@ impl Decoder {
             latent: dense(config.latent_dim, size)?,
             observation: dense(observation, size)?,
             positions: Embedding::new(TOKENS, size)?,
-            encoder: Transformer::new(sizes(config, config.n_encoder_layers), false)?,
+            encoder: Transformer::new(config.sizes(config.n_encoder_layers), false)?,
             queries: Embedding::new(config.chunk_size, size)?,
-            decoder: Transformer::new(sizes(config, config.n_decoder_layers), true)?,
+            decoder: Transformer::new(config.sizes(config.n_decoder_layers), true)?,
             action: dense(size, action)?,
         })
     }

@@ -4,7 +4,6 @@ use opendr_engine::{Random, Result};
 use opendr_kernels::{Activation, Compute, Dense, Embedding, Sequences};
 
 use super::ActConfig;
-use super::sizes;
 use crate::batch::Batch;
 use crate::parts::{split, split_mut};
 use crate::transformer::{Transformer, TransformerTape, initialise_dense, initialise_vectors};
@@ -47,7 +46,7 @@ impl Posterior {
             positions: Embedding::new(BEFORE + config.chunk_size, size)?,
             observation: dense(observation, size)?,
             action: dense(action, size)?,
-            encoder: Transformer::new(sizes(config, config.n_vae_encoder_layers), false)?,
+            encoder: Transformer::new(config.sizes(config.n_vae_encoder_layers), false)?,
             latent: dense(size, 2 * config.latent_dim)?,
             chunk: config.chunk_size,
         })

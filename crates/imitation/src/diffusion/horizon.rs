@@ -2,8 +2,9 @@
 
 use opendr_engine::Random;
 
+use super::config::DiffusionParams;
 use super::denoiser::{DenoiserTape, Noisy};
-use super::{DiffusionParams, DiffusionPolicy};
+use super::policy::DiffusionPolicy;
 use crate::method::Acting;
 
 /// State of a controller: the last observations, and the actions that were predicted.

@@ -4,6 +4,7 @@ mod config;
 mod denoiser;
 mod horizon;
 mod modulated;
+mod policy;
 mod schedule;
 
 use opendr_engine::learner::Spec;
@@ -13,23 +14,12 @@ use opendr_kernels::{AdamOptions, Compute, WeightDecay};
 pub use config::{DiffusionConfig, DiffusionParams};
 use denoiser::{Denoiser, DenoiserTape, Noisy};
 pub use horizon::DiffusionMemory;
+pub use policy::DiffusionPolicy;
 use schedule::NoiseSchedule;
 
 use crate::affine::Affine;
 use crate::batch::{Batch, Window};
 use crate::method::{Acting, ChunkMethod, Optimisation};
-
-/// Diffusion policy: predicts a chunk of actions by removing noise from a random one, step by step, so that it can follow one of
-/// several ways that demonstrations took instead of their mean.
-///
-/// Horizons, noise schedule, scaling and optimisation are the paper's; the network is one of residual blocks on the whole chunk, as in
-/// the study of Ren et al. (2024) for observations of numbers, which a CPU trains in minutes, instead of a U-Net.
-#[derive(Debug, Clone)]
-pub struct DiffusionPolicy {
-    config: DiffusionConfig,
-    schedule: NoiseSchedule,
-    denoiser: Denoiser,
-}
 
 /// Work memory of the training of [`DiffusionPolicy`].
 #[derive(Debug, Clone, Default)]

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use opendr_engine::dataset::DatasetRef;
-use opendr_engine::environment::{Environment, EnvironmentSource, Space, Step};
+use opendr_engine::environment::{Environment, EnvironmentSource, Step};
 use opendr_engine::learner::FitJob;
 use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::params::Params as _;
@@ -15,6 +15,7 @@ use opendr_runlog::{Checkpoints, RunLog};
 use super::method::ImitationMethod;
 use crate::demonstrations::{DemonstrationSet, RecordingOptions};
 use crate::policy::ChunkPolicy;
+use crate::source::Source;
 use crate::training::ChunkTraining;
 
 /// File of the policy in a container.
@@ -32,14 +33,6 @@ const ENVIRONMENT: &str = "environment";
 const FIRST_SEED: u64 = 1 << 42;
 /// Steps of the optimiser between two points of the curves.
 const LOGGED: u64 = 100;
-
-/// Demonstrations with their spaces, and where they are from.
-pub(crate) struct Source {
-    pub set: DemonstrationSet,
-    pub spaces: [Space; 2],
-    /// Id of the environment; none if the demonstrations are those of a robot.
-    pub environment: Option<String>,
-}
 
 /// Trains on demonstrations of a teacher in an environment, and evaluates the policy in another one.
 ///

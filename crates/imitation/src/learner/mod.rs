@@ -4,8 +4,6 @@ mod fit;
 mod imitation_learner;
 mod method;
 
-#[cfg(feature = "lerobot")]
-pub(crate) use fit::Source;
 pub use imitation_learner::{ImitationLearner, ImitationState};
 pub use method::{ActFitParams, DiffusionFitParams, ImitationMethod, TeacherParams};
 

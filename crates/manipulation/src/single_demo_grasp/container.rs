@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use opendr_engine::Result;
-use opendr_engine::learner::Learner as _;
+use opendr_engine::learner::Spec;
 use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::params::Params as _;
 
-use super::learner::SingleDemoGrasp;
 use super::network::GraspNetwork;
 use super::params::SingleDemoGraspParams;
 
@@ -25,8 +24,12 @@ pub(super) fn read(model: &Model) -> Result<GraspNetwork> {
 ///
 /// # Errors
 /// `Io` if writing fails.
-pub(super) fn write(path: &Path, network: &GraspNetwork, params: &SingleDemoGraspParams) -> Result<()> {
-    let spec = SingleDemoGrasp::SPEC;
+pub(super) fn write(
+    path: &Path,
+    spec: Spec,
+    network: &GraspNetwork,
+    params: &SingleDemoGraspParams,
+) -> Result<()> {
     let mut manifest = Manifest::new(spec.name, "");
     manifest.task = Some(spec.task);
     manifest.params = params.to_map();

@@ -50,7 +50,7 @@ impl Fit for SingleDemoGrasp {
         if job.progress.stopped() {
             return Ok(statistics);
         }
-        container::write(&job.model(), &network, params)?;
+        container::write(&job.model(), Self::SPEC, &network, params)?;
         Ok(statistics)
     }
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use opendr_datasets::Problem;
-use opendr_engine::{JsonFormat, Result, ResultExt, Statistics};
+use opendr_engine::{JsonFormat, Progress, Result, ResultExt, Statistics};
 use serde::{Deserialize, Serialize};
 
 /// File name of the report in the output folder.
@@ -59,8 +59,20 @@ impl Fitted {
         Self::FORMAT.read(&json).context(context)
     }
 
+    /// Writes the report, and prints a note if the training was stopped.
+    pub(super) fn finish(self, progress: &dyn Progress) -> Result<Self> {
+        self.write()?;
+        if !self.complete {
+            progress.note(&format!(
+                "stopped: the state is in {}, from which the training resumes",
+                self.output.display()
+            ));
+        }
+        Ok(self)
+    }
+
     /// Writes `report.json` into the output folder.
-    pub(super) fn write(&self) -> Result<()> {
+    fn write(&self) -> Result<()> {
         let path = self.output.join(REPORT);
         fs::write(&path, Self::FORMAT.to_pretty_json(self)?).context(|| format!("writing {}", path.display()))
     }

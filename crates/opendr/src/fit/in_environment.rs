@@ -9,7 +9,11 @@ use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::{Error, Progress, Result, Statistics};
 use opendr_evaluation::DatasetOpener;
 
-use super::{FitData, FitOptions, Fitted, check_fit, finish, run_folder};
+use super::check::check_fit;
+use super::data::FitData;
+use super::fitted::Fitted;
+use super::options::FitOptions;
+use super::run_folder;
 use crate::training_environment;
 
 /// Environments in which a policy is trained and evaluated.
@@ -41,7 +45,7 @@ pub fn fit_policy(
     let fitted = fit_with(learner, entry, options, progress, |learner, job| {
         learner.fit_in(&options.params, env, val_env, job)
     })?;
-    finish(fitted, progress)
+    fitted.finish(progress)
 }
 
 /// Trains a policy on demonstrations, a data set of its own format. Validation data measure the error of its actions.
@@ -67,7 +71,7 @@ pub(super) fn fit_demonstrations(
     let fitted = fit_with(learner, entry, options, progress, |learner, job| {
         learner.fit(&options.params, dataset, val_dataset, job)
     })?;
-    finish(Fitted { dataset: name_of(dataset, options), ..fitted }, progress)
+    Fitted { dataset: name_of(dataset, options), ..fitted }.finish(progress)
 }
 
 /// Trains a learner of active perception: perception on a data set, and the camera motion in environments from `env`.
@@ -97,7 +101,7 @@ pub fn fit_active(
         problems: problems.list(),
         ..fitted
     };
-    finish(fitted, progress)
+    fitted.finish(progress)
 }
 
 /// Returns the name of a data set in the report.

@@ -1,5 +1,7 @@
 //! Training of every learner, shared by all surfaces.
 
+mod check;
+mod data;
 mod fitted;
 mod in_environment;
 mod options;
@@ -16,6 +18,8 @@ use opendr_engine::{Device, Error, Progress, Result, Statistics};
 use opendr_evaluation::{DatasetOpener, Distillation, Samples, Teacher, annotation_type};
 use opendr_inference as inference;
 
+pub use check::check_fit;
+pub use data::FitData;
 pub use fitted::Fitted;
 pub use in_environment::{FitEnvironments, fit_active, fit_policy};
 pub use options::FitOptions;
@@ -28,22 +32,6 @@ const TEACHER_THRESHOLD: f32 = 0.5;
 const THRESHOLD: &str = "threshold";
 /// Maximum number of streams of a teacher that run in parallel.
 const MAX_STREAMS: usize = 4;
-
-/// Data on which a learner is trained and evaluated.
-pub struct FitData<'a> {
-    /// Training data.
-    pub dataset: DatasetRef<'a>,
-    /// Validation data (default: those of [`FitOptions`]).
-    pub val_dataset: Option<DatasetRef<'a>>,
-    /// Teacher that annotates the samples (default: that of [`FitOptions`]).
-    pub teacher: Option<Teacher>,
-}
-
-impl<'a> From<DatasetRef<'a>> for FitData<'a> {
-    fn from(dataset: DatasetRef<'a>) -> Self {
-        Self { dataset, val_dataset: None, teacher: None }
-    }
-}
 
 /// Trains a learner of `entry`, from its model if one is loaded, loads the result, and writes a report beside it.
 ///
@@ -113,19 +101,7 @@ pub fn fit(
         problems: problems.list(),
         output,
     };
-    finish(fitted, progress)
-}
-
-/// Writes the report, and prints a note if the training was stopped.
-fn finish(fitted: Fitted, progress: &dyn Progress) -> Result<Fitted> {
-    fitted.write()?;
-    if !fitted.complete {
-        progress.note(&format!(
-            "stopped: the state is in {}, from which the training resumes",
-            fitted.output.display()
-        ));
-    }
-    Ok(fitted)
+    fitted.finish(progress)
 }
 
 /// Checked options of a training.
@@ -235,44 +211,4 @@ fn streams_at_once(device: Device) -> Result<usize> {
         Device::Cpu => Ok(inference::default_threads()?.min(MAX_STREAMS)),
         _ => Ok(1),
     }
-}
-
-/// Checks that a learner trains and that its training has the parameters, before data sets are opened.
-///
-/// # Errors
-/// `Unsupported`, with the names of learners that train; `InvalidParam`.
-pub fn check_fit(entry: &Entry, params: &ParamMap) -> Result<()> {
-    if !entry.capabilities.fit && !entry.capabilities.fit_in {
-        return Err(cannot_fit(entry));
-    }
-    params.iter().try_for_each(|(name, value)| {
-        let field = entry.fit_params.iter().find(|field| field.is_called(name)).ok_or_else(|| {
-            let names: Vec<_> = entry.fit_params.iter().map(|field| field.name).collect();
-            let class = entry.spec.class;
-            Error::invalid_param(format!(
-                "fit of {class} has no parameter {name:?}; it has {}",
-                names.join(", ")
-            ))
-        })?;
-        field.check(value)
-    })
-}
-
-#[cold]
-fn cannot_fit(entry: &Entry) -> Error {
-    let (class, task) = (entry.spec.class, entry.spec.task);
-    let names = |of_task: bool| {
-        let entries = registry().entries().into_iter();
-        let able = entries.filter(|other| other.capabilities.fit && (!of_task || other.spec.task == task));
-        able.map(|other| other.spec.name).collect::<Vec<_>>().join(", ")
-    };
-    Error::unsupported(match (names(true), names(false)) {
-        _ if !cfg!(feature = "training") => {
-            format!("{class} cannot fit: this build has no training; build with --features training")
-        }
-        (none, others) if none.is_empty() => {
-            format!("{class} cannot fit, nor can any learner of {task}; learners that train: {others}")
-        }
-        (of_task, _) => format!("{class} cannot fit; learners of {task} that train: {of_task}"),
-    })
 }

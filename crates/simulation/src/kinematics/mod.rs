@@ -4,13 +4,15 @@
 //! [`SERVICE_ARM`] the URDF of the arm of the mobile manipulators in this crate.
 
 mod chain;
+mod joint;
 mod roll_arm;
 #[cfg(test)]
 mod tests;
 mod transform;
 mod urdf;
 
-pub use chain::{Joint, SerialChain};
+pub use chain::SerialChain;
+pub use joint::Joint;
 pub use roll_arm::{JointAngles, RollArm};
 pub use transform::Transform;
 

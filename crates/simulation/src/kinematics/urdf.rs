@@ -3,7 +3,7 @@
 use opendr_engine::{Error, Result, ResultExt as _};
 use roxmltree::{Document, Node};
 
-use super::chain::Joint;
+use super::joint::Joint;
 use super::transform::Transform;
 use crate::multirotor::{Vector, dot, unit};
 

@@ -50,3 +50,11 @@ pub(super) fn distance(one: [f64; 2], other: [f64; 2]) -> f64 {
     let [x, y] = [one[0] - other[0], one[1] - other[1]];
     (x * x + y * y).sqrt()
 }
+
+/// Returns the cells next to a cell in the four directions.
+pub(super) fn beside(cell: usize) -> impl Iterator<Item = usize> {
+    let [x, y] = column_row(cell);
+    [[1, 0], [-1, 0], [0, 1], [0, -1]]
+        .into_iter()
+        .filter_map(move |[right, down]| index([x + right, y + down]))
+}

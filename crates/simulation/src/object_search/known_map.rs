@@ -4,8 +4,7 @@ use opendr_engine::environment::{Snapshot, StateReader};
 use opendr_engine::{Error, Result};
 
 use super::floor_plan::WITH_MARGIN;
-use super::grid::{CELLS, cell_of, disc};
-use super::sensor::beside;
+use super::grid::{CELLS, beside, cell_of, disc};
 
 /// What is known of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

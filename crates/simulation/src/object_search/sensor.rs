@@ -1,6 +1,6 @@
 //! A depth camera in the plane.
 
-use super::grid::{column_row, column_row_of, index, middle};
+use super::grid::{column_row_of, index, middle};
 use super::{CELL, Cell, FloorPlan, KnownMap, ObjectSearchParams};
 use crate::arctangent::{arctangent2, wrapped};
 use crate::sine_cosine::sine_cosine;
@@ -86,12 +86,4 @@ fn cast(from: [f64; 2], direction: [f64; 2], range: f64, mut visit: impl FnMut(u
         cell[axis] += step[axis];
         next[axis] += apart[axis];
     }
-}
-
-/// Returns the cells next to a cell in the four directions.
-pub(super) fn beside(cell: usize) -> impl Iterator<Item = usize> {
-    let [x, y] = column_row(cell);
-    [[1, 0], [-1, 0], [0, 1], [0, -1]]
-        .into_iter()
-        .filter_map(move |[right, down]| index([x + right, y + down]))
 }

@@ -5,12 +5,9 @@ use opendr_engine::environment::{Snapshot, StateReader};
 
 use super::drive::Drive;
 use super::shape::Convex;
-use super::vector::{Vector2, cross, dot, left, plus, turned};
+use super::vector::{Vector2, Velocity, cross, dot, left, plus, turned};
 use crate::multirotor::numbers;
 use crate::sine_cosine::sine_cosine;
-
-/// Velocities: m/s along x and y, rad/s, and m/s of the slide.
-pub(super) type Velocity = [f64; 4];
 
 /// Most parts of a body.
 const MAX_PARTS: usize = 4;

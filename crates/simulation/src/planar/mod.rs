@@ -9,6 +9,7 @@
 mod body;
 mod contact;
 mod drive;
+mod drive_impulse;
 mod episode_key;
 mod shape;
 #[cfg(test)]

@@ -18,6 +18,9 @@ pub(crate) fn norm(a: Vector2) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// Velocities: m/s along x and y, rad/s, and m/s of the slide.
+pub(super) type Velocity = [f64; 4];
+
 /// Returns the vector turned by a right angle to the left.
 pub(crate) fn left(a: Vector2) -> Vector2 {
     [-a[1], a[0]]

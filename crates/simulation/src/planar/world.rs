@@ -5,7 +5,7 @@ use opendr_engine::environment::{Snapshot, StateReader};
 
 use super::body::Body;
 use super::contact::{Contact, find};
-use super::drive::DriveImpulse;
+use super::drive_impulse::DriveImpulse;
 
 /// Passes of Gauss-Seidel in a step.
 const PASSES: usize = 16;

@@ -1,0 +1,20 @@
+//! What a learner is trained on.
+
+use opendr_engine::dataset::DatasetRef;
+use opendr_evaluation::Teacher;
+
+/// Data on which a learner is trained and evaluated.
+pub struct FitData<'a> {
+    /// Training data.
+    pub dataset: DatasetRef<'a>,
+    /// Validation data (default: those of [`FitOptions`]).
+    pub val_dataset: Option<DatasetRef<'a>>,
+    /// Teacher that annotates the samples (default: that of [`FitOptions`]).
+    pub teacher: Option<Teacher>,
+}
+
+impl<'a> From<DatasetRef<'a>> for FitData<'a> {
+    fn from(dataset: DatasetRef<'a>) -> Self {
+        Self { dataset, val_dataset: None, teacher: None }
+    }
+}
