@@ -65,7 +65,7 @@ pub(crate) struct Body {
 }
 
 impl Body {
-    /// A body that never moves.
+    /// Creates a body that never moves.
     pub fn fixed(parts: &[Part], friction: f64) -> Self {
         let mut own = [Part { shape: Convex::disc(0.0), slides: 0.0 }; MAX_PARTS];
         own.iter_mut().zip(parts).for_each(|(own, part)| *own = *part);
@@ -83,7 +83,7 @@ impl Body {
         }
     }
 
-    /// The same, free to move.
+    /// Returns the same body, free to move.
     pub fn with_mass(self, mass: f64, inertia: f64) -> Self {
         Self { mass, inertia, ..self }
     }

@@ -67,7 +67,7 @@ fn corners_near(of: &Convex, shape: &Convex, rounding: f64, add: &mut dyn FnMut(
 }
 
 impl Contact {
-    /// One pass of Gauss-Seidel: the impulse along the normal presses only, that across is at most `friction` times as large.
+    /// Performs one pass of Gauss-Seidel: the impulse along the normal presses only, that across is at most `friction` times as large.
     pub fn solve(&mut self, bodies: &mut [Body], seconds: f64) {
         let tangent = left(self.normal);
         let bias = if self.gap > 0.0 {

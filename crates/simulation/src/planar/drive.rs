@@ -16,7 +16,7 @@ pub(crate) struct Drive {
 }
 
 impl Drive {
-    /// The friction of a table below a body.
+    /// Returns the friction of a table below a body.
     ///
     /// `length` is the mean distance of the area from the centre of friction under even pressure (Goyal, Ruina and Papadopoulos, 1991).
     pub fn table_friction(coefficient: f64, mass: f64, length: f64) -> Self {

@@ -28,13 +28,13 @@ impl Convex {
         Self { corners: [[0.0; 2]; MAX_CORNERS], count: 1, radius }
     }
 
-    /// An upright rectangle of `half` sizes about `centre`.
+    /// Returns an upright rectangle of `half` sizes about `centre`.
     pub fn rectangle(centre: Vector2, half: Vector2) -> Self {
         let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         Self::polygon(&signs.map(|[x, y]| [centre[0] + x * half[0], centre[1] + y * half[1]]))
     }
 
-    /// A polygon of up to [`MAX_CORNERS`] corners, counter-clockwise; further ones are left out.
+    /// Returns a polygon of up to [`MAX_CORNERS`] corners, counter-clockwise; further ones are left out.
     pub fn polygon(points: &[Vector2]) -> Self {
         let mut corners = [[0.0; 2]; MAX_CORNERS];
         let count = points.len().min(MAX_CORNERS);
