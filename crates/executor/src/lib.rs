@@ -29,14 +29,25 @@
 //! ```
 
 mod attributes;
+mod constant;
+mod control;
+mod declared;
 mod executor;
 mod graph;
 mod io;
+mod memory;
 mod ops;
+mod order;
 mod plan;
 mod planner;
+mod planning;
+mod reading;
 mod remap;
+mod simplify;
+mod stages;
+mod subgraphs;
 mod tensor;
+mod value;
 
 pub use executor::{Executor, LayerTime};
 pub use ops::supported_operators;

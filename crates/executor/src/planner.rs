@@ -1,5 +1,6 @@
 //! Planning of a graph for one shape of its inputs: values with known shapes, and the steps that compute them.
 
+use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -7,58 +8,13 @@ use opendr_engine::{Error, Result};
 use opendr_kernels::{ALIGNMENT, Arena, Compute, Region};
 use opendr_onnx::proto::NodeProto;
 
-use crate::graph::Graph;
+use crate::attributes::Attributes;
+use crate::constant::{Constant, Given, MAX_BYTES, too_many};
+use crate::graph::{Graph, Packed};
 use crate::io::{Io, Kernel, Place};
 use crate::remap;
-use crate::tensor::{Constant, Kind, count};
-
-/// Order of the dimensions in memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Layout {
-    /// As the shape states.
-    Plain,
-    /// The second dimension of the shape comes last.
-    ChannelsLast,
-}
-
-/// Index of a value of a plan.
-pub(crate) type Id = usize;
-
-#[derive(Debug, Clone)]
-pub(crate) enum Source {
-    Constant(Arc<Constant>),
-    Input(usize),
-    /// A buffer and an offset in it.
-    Buffer(usize, usize),
-}
-
-#[derive(Debug, Clone)]
-pub(crate) struct Value {
-    pub(crate) kind: Kind,
-    pub(crate) shape: Vec<usize>,
-    pub(crate) layout: Layout,
-    pub(crate) source: Source,
-    /// The same elements in the other layout.
-    other: Option<Id>,
-}
-
-impl Value {
-    /// Returns the dimensions in the order of memory.
-    pub(crate) fn physical(&self) -> Vec<usize> {
-        match self.layout {
-            Layout::Plain => self.shape.clone(),
-            Layout::ChannelsLast => channels_to_end(&self.shape),
-        }
-    }
-}
-
-pub(crate) fn channels_to_end(shape: &[usize]) -> Vec<usize> {
-    let mut dims = shape.to_vec();
-    if dims.len() > 2 {
-        dims[1..].rotate_left(1);
-    }
-    dims
-}
+use crate::tensor::{Kind, count};
+pub(crate) use crate::value::{Id, Layout, Source, Value};
 
 pub(crate) struct Step {
     pub(crate) kernel: Box<dyn Kernel>,
@@ -81,14 +37,23 @@ pub(crate) struct Planner<'a> {
     /// Dequantised values that nothing has read as floats yet, and their nodes.
     deferred: HashMap<String, usize>,
     pub(crate) node: usize,
+    /// The node of the planned graph whose branch is planned, if one is.
+    branching: Option<usize>,
+    /// Bytes of the constants that planning has computed.
+    computed: usize,
+    /// Whether the node has read a constant that another plan may not have.
+    varying: Cell<bool>,
+    /// Values that the node needs and no plan knows before a run.
+    missing: RefCell<Vec<Id>>,
 }
 
-/// Bytes of all constants that planning may compute, beyond which the model is refused.
+/// Bytes of a constant that planning may compute, and of all of them.
 const MAX_CONSTANT: usize = 1 << 28;
+const MAX_CONSTANTS: usize = 1 << 31;
 
 impl<'a> Planner<'a> {
     /// Begins with the constants and inputs of a graph.
-    pub(crate) fn new(graph: &'a Graph, compute: &'a Compute, shapes: &[Vec<usize>]) -> Result<Self> {
+    pub(crate) fn new(graph: &'a Graph, compute: &'a Compute, given: &[Given]) -> Result<Self> {
         let mut planner = Self {
             graph,
             compute,
@@ -99,17 +64,69 @@ impl<'a> Planner<'a> {
             fused: HashSet::new(),
             deferred: HashMap::new(),
             node: 0,
+            branching: None,
+            computed: 0,
+            varying: Cell::new(false),
+            missing: RefCell::default(),
         };
-        for (name, constant) in &graph.constants {
-            let id = planner.add_constant_of(Arc::clone(constant));
+        planner.add_constants();
+        for (index, (name, Given { kind, shape, value })) in graph.inputs.iter().zip(given).enumerate() {
+            let bytes = count(shape)?.saturating_mul(kind.bytes());
+            if bytes > MAX_BYTES {
+                return Err(too_many(bytes));
+            }
+            let id = match value {
+                Some(constant) => planner.add_constant_of(Arc::clone(constant)),
+                None => planner.add(*kind, shape.clone(), Layout::Plain, Source::Input(index)),
+            };
             planner.names.insert(name.clone(), id);
         }
-        for (index, (input, shape)) in graph.inputs.iter().zip(shapes).enumerate() {
-            count(shape)?;
-            let id = planner.add(input.kind, shape.clone(), Layout::Plain, Source::Input(index));
-            planner.names.insert(input.name.clone(), id);
-        }
         Ok(planner)
+    }
+
+    fn add_constants(&mut self) {
+        for (name, constant) in &self.graph.constants {
+            let id = self.add_constant_of(Arc::clone(constant));
+            self.names.insert(name.clone(), id);
+        }
+    }
+
+    /// Plans a branch of the node as a part of this plan: `inputs` are the values that the branch reads.
+    pub(crate) fn within<R>(
+        &mut self,
+        branch: &'a Graph,
+        inputs: &[Option<Id>],
+        plan: impl FnOnce(&mut Self) -> Result<R>,
+    ) -> Result<R> {
+        let (node, branching) = (self.node, self.branching);
+        let graph = std::mem::replace(&mut self.graph, branch);
+        let (names, fused) = (std::mem::take(&mut self.names), std::mem::take(&mut self.fused));
+        let deferred = std::mem::take(&mut self.deferred);
+        self.branching = branching.or(Some(node));
+        self.add_constants();
+        let known = branch.inputs.iter().zip(inputs).filter_map(|(name, id)| Some((name.clone(), (*id)?)));
+        self.names.extend(known);
+        let planned = plan(self);
+        (self.graph, self.names, self.fused, self.deferred) = (graph, names, fused, deferred);
+        (self.node, self.branching) = (node, branching);
+        planned
+    }
+
+    /// Begins with the steps of a node.
+    pub(crate) fn begin(&mut self, node: usize) {
+        self.node = node;
+        self.varying.set(false);
+        self.missing.borrow_mut().clear();
+    }
+
+    /// Returns the values without which the node cannot be planned, and forgets them.
+    pub(crate) fn take_missing(&self) -> Vec<Id> {
+        self.missing.take()
+    }
+
+    /// Returns packed weights, which all plans of the graph share where they cannot differ.
+    pub(crate) fn packed(&self, variant: u8, make: impl FnOnce() -> Packed) -> Packed {
+        if self.varying.get() { make() } else { self.graph.packed((self.node, variant), make) }
     }
 
     /// Gives a name to a value, unless it has one.
@@ -122,8 +139,14 @@ impl<'a> Planner<'a> {
         self.values.len() - 1
     }
 
-    pub(crate) fn add_constant(&mut self, constant: Constant) -> Id {
+    pub(crate) fn add_constant(&mut self, mut constant: Constant) -> Id {
+        constant.varies |= self.varying.get();
         self.add_constant_of(Arc::new(constant))
+    }
+
+    /// Adds a constant that depends on the shapes of this plan.
+    pub(crate) fn add_size(&mut self, constant: Constant) -> Id {
+        self.add_constant_of(Arc::new(Constant { varies: true, ..constant }))
     }
 
     fn add_constant_of(&mut self, constant: Arc<Constant>) -> Id {
@@ -153,14 +176,32 @@ impl<'a> Planner<'a> {
     /// Returns the constant of a value in the order of its shape.
     pub(crate) fn constant(&self, id: Id) -> Option<Arc<Constant>> {
         let value = &self.values[id];
-        match (&value.source, value.layout, value.other) {
-            (Source::Constant(constant), Layout::Plain, _) => Some(Arc::clone(constant)),
+        let constant = match (&value.source, value.layout, value.other) {
+            (Source::Constant(constant), Layout::Plain, _) => Some(constant),
             (Source::Constant(_), Layout::ChannelsLast, Some(other)) => match &self.values[other].source {
-                Source::Constant(constant) => Some(Arc::clone(constant)),
+                Source::Constant(constant) => Some(constant),
                 _ => None,
             },
             _ => None,
-        }
+        }?;
+        self.varying.set(self.varying.get() || constant.varies);
+        Some(Arc::clone(constant))
+    }
+
+    /// Returns the constant of a value that the plan depends on.
+    ///
+    /// # Errors
+    /// `Unsupported` where a run computes the value: the node is then planned in the run.
+    pub(crate) fn known(&self, node: &NodeProto, id: Id) -> Result<Arc<Constant>> {
+        self.constant(id).ok_or_else(|| {
+            self.missing.borrow_mut().push(id);
+            node.refused("a value that depends on the data of the inputs")
+        })
+    }
+
+    /// Returns whether the value is known before a run.
+    pub(crate) fn is_constant(&self, id: Id) -> bool {
+        matches!(self.values[id].source, Source::Constant(_))
     }
 
     /// Returns the number of a constant of one float.
@@ -175,13 +216,10 @@ impl<'a> Planner<'a> {
     /// Returns a constant list of integers.
     ///
     /// # Errors
-    /// `Unsupported` where the list depends on the data of the inputs.
+    /// Those of [`Planner::known`], and `Format` where it does not have integers.
     pub(crate) fn ints(&self, node: &NodeProto, id: Id) -> Result<Vec<i64>> {
-        use crate::attributes::Attributes;
-        let constant = self
-            .constant(id)
-            .ok_or_else(|| node.refused("a shape or list that depends on the data of the inputs"))?;
-        constant.ints().ok_or_else(|| node.damaged("a shape or list does not have integers"))
+        let list = self.known(node, id)?.ints();
+        list.ok_or_else(|| node.damaged("a shape or list does not have integers"))
     }
 
     /// Adds a step, or computes it where it depends on constants only. Outputs are given by type, shape and layout.
@@ -215,7 +253,7 @@ impl<'a> Planner<'a> {
             reads: reads.to_vec(),
             buffer,
             sizes,
-            node: self.node,
+            node: self.branching.unwrap_or(self.node),
         });
         let mut ids = Vec::new();
         for ((kind, shape, layout), offset) in outputs.iter().zip(offsets) {
@@ -232,13 +270,18 @@ impl<'a> Planner<'a> {
         sizes: &[usize],
     ) -> Result<Vec<Id>> {
         let bytes = sizes[0];
-        if bytes > MAX_CONSTANT {
+        self.computed = self.computed.saturating_add(bytes);
+        if bytes > MAX_CONSTANT || self.computed > MAX_CONSTANTS {
             return Err(Error::unsupported(format!("the ONNX model computes a constant of {bytes} bytes")));
         }
+        let mut varies = self.varying.get();
         let reads: Vec<Place> = reads
             .iter()
             .map(|id| match id.map(|id| &self.values[id].source) {
-                Some(Source::Constant(constant)) => Place::Constant(Arc::clone(constant)),
+                Some(Source::Constant(constant)) => {
+                    varies |= constant.varies;
+                    Place::Constant(Arc::clone(constant))
+                }
                 _ => Place::Absent,
             })
             .collect();
@@ -252,7 +295,7 @@ impl<'a> Planner<'a> {
             sizes,
             compute: self.compute,
         })?;
-        let constant = Arc::new(Constant { kind: *kind, shape: shape.clone(), data });
+        let constant = Arc::new(Constant { kind: *kind, shape: shape.clone(), data, varies });
         let id = self.add(*kind, shape.clone(), *layout, Source::Constant(constant));
         Ok(vec![id])
     }
@@ -276,8 +319,9 @@ impl<'a> Planner<'a> {
         let value = self.values[id].clone();
         let source = match value.source {
             Source::Constant(constant) if layout == Layout::Plain => {
-                let constant = Constant { kind: constant.kind, shape: shape.clone(), data: copy(&constant) };
-                Source::Constant(Arc::new(constant))
+                let (kind, varies) = (constant.kind, constant.varies);
+                let data = copy(&constant);
+                Source::Constant(Arc::new(Constant { kind, shape: shape.clone(), data, varies }))
             }
             other => other,
         };

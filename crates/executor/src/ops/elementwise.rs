@@ -7,9 +7,11 @@ use opendr_onnx::proto::NodeProto;
 use super::functions;
 use super::inputs::{optional, required};
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::io::{Io, Kernel};
-use crate::planner::{Id, Layout, Planner, channels_to_end};
-use crate::tensor::{Constant, Kind, count};
+use crate::planner::{Id, Layout, Planner};
+use crate::tensor::{Kind, count};
+use crate::value::channels_to_end;
 
 /// Returns the function of a node of one input.
 pub(crate) fn unary_of(node: &NodeProto) -> Option<Unary> {

@@ -124,10 +124,12 @@ pub(crate) fn one_hot(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opt
     let [at, depth, values] = [0, 1, 2].map(|slot| required(node, inputs, slot));
     let (at, values) = (planner.plain(at?)?, planner.plain(values?)?);
     let depth = depth?;
-    let depth = match planner.scalar(depth) {
-        Some(depth) => depth as i64,
-        None => planner.ints(node, depth)?.first().copied().unwrap_or(-1),
+    let depth = planner.known(node, depth)?;
+    let depth = match depth.floats() {
+        Some(depth) => depth.first().map(|&depth| depth as i64),
+        None => depth.ints().and_then(|depth| depth.first().copied()),
     };
+    let depth = depth.unwrap_or(-1);
     let depth = usize::try_from(depth).ok().filter(|_| (1..=MAX_DEPTH).contains(&depth));
     let depth = depth.ok_or_else(|| node.damaged("its depth"))?;
     let (dims, at_kind, kind) = (planner.shape(at), planner.kind(at), planner.kind(values));

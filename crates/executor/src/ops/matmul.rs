@@ -9,10 +9,11 @@ use opendr_onnx::proto::NodeProto;
 use super::elementwise::{Function, combine};
 use super::inputs::{optional, required};
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::graph::Packed;
 use crate::io::{Io, Kernel};
 use crate::planner::{Id, Layout, Planner};
-use crate::tensor::{Constant, Kind, count};
+use crate::tensor::{Kind, count};
 
 pub(crate) fn matmul(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let (a, b) = (required(node, inputs, 0)?, required(node, inputs, 1)?);
@@ -89,8 +90,7 @@ fn with_weights(
 ) -> Result<Id> {
     let floats = weights.floats().ok_or_else(|| node.refused("weights that are not floats"))?;
     let compute = planner.compute.clone();
-    let index = planner.node;
-    let filters = planner.graph.packed((index, 3), || {
+    let filters = planner.packed(3, || {
         Packed::Dense(Arc::new(Filters::from_matrix(&compute, floats, [depth, columns], transposed, bias)))
     });
     let Packed::Dense(filters) = filters else { return Err(node.refused("weights of two kinds")) };
@@ -135,7 +135,7 @@ impl Kernel for ProductStep {
 pub(crate) fn gemm(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let (a, b) = (required(node, inputs, 0)?, required(node, inputs, 1)?);
     let a = planner.plain(a)?;
-    let constant = planner.constant(b).ok_or_else(|| node.refused("a second factor that is not constant"))?;
+    let constant = planner.known(node, b)?;
     let (alpha, beta) = (node.float("alpha", 1.0), node.float("beta", 1.0));
     if alpha != 1.0 || node.int_or("transA", 0) != 0 || planner.kind(a) != Kind::F32 {
         return Err(node.refused("its factor, or a transposed first matrix"));

@@ -13,6 +13,7 @@ mod inputs;
 mod lines;
 mod matmul;
 mod movement;
+mod non_zero;
 mod normalise;
 mod pool;
 mod quantize;
@@ -20,16 +21,38 @@ mod recurrent;
 mod reduce;
 mod resize;
 mod shape;
+mod suppression;
 
 use opendr_engine::Result;
 use opendr_onnx::proto::NodeProto;
 
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::planner::{Id, Planner};
 
-type Build = fn(&mut Planner<'_>, &NodeProto, &[Option<Id>]) -> Result<Vec<Id>>;
+pub(crate) type Build = fn(&mut Planner<'_>, &NodeProto, &[Option<Id>]) -> Result<Vec<Id>>;
 
-/// Operators and what builds them, by name.
+/// Computes the outputs of a node from its inputs.
+pub(crate) type Host = fn(&NodeProto, &[Option<&Constant>]) -> Result<Vec<Constant>>;
+
+/// How an operator runs.
+pub(crate) enum Operator {
+    /// As steps of a plan.
+    Steps(Build),
+    /// On tensors: the shapes of its outputs depend on their elements.
+    Host(Host),
+    If,
+    Loop,
+}
+
+/// Operators that run on tensors, by name.
+const HOSTS: &[(&str, Host)] =
+    &[("NonMaxSuppression", suppression::non_max_suppression), ("NonZero", non_zero::non_zero)];
+
+/// Operators with graphs.
+const CONTROL: &[&str] = &["If", "Loop"];
+
+/// Operators and what builds their steps, by name.
 const OPERATORS: &[(&str, Build)] = &[
     ("Abs", elementwise::unary),
     ("Acos", functions::build),
@@ -159,13 +182,32 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Xor", elementwise::binary),
 ];
 
-/// Returns the names of the operators that the executor runs.
+/// Returns the names of the operators that the executor runs, in alphabetical order.
 pub fn supported_operators() -> impl Iterator<Item = &'static str> {
-    OPERATORS.iter().map(|(name, _)| *name)
+    let hosts = HOSTS.iter().map(|(name, _)| *name);
+    let mut names: Vec<&str> = OPERATORS.iter().map(|(name, _)| *name).chain(hosts).collect();
+    names.extend(CONTROL);
+    names.sort_unstable();
+    names.into_iter()
+}
+
+/// Returns how an operator runs; `None` where the executor lacks it.
+pub(crate) fn operator(name: &str) -> Option<Operator> {
+    if let Some((_, build)) = OPERATORS.iter().find(|(operator, _)| *operator == name) {
+        return Some(Operator::Steps(*build));
+    }
+    if let Some((_, host)) = HOSTS.iter().find(|(operator, _)| *operator == name) {
+        return Some(Operator::Host(*host));
+    }
+    match name {
+        "If" => Some(Operator::If),
+        "Loop" => Some(Operator::Loop),
+        _ => None,
+    }
 }
 
 pub(crate) fn is_supported(name: &str) -> bool {
-    OPERATORS.iter().any(|(operator, _)| *operator == name)
+    operator(name).is_some()
 }
 
 /// Builds the steps of a node of quantised values, which computes with their bytes; `None` where it does not.
@@ -187,8 +229,9 @@ pub(crate) fn build_on_bytes(planner: &mut Planner<'_>, node: &NodeProto) -> Res
 
 /// Builds the steps of a node and returns its outputs.
 pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
-    let build = OPERATORS.iter().find(|(name, _)| *name == node.op_type).map(|(_, build)| build);
-    let build = build.ok_or_else(|| node.refused("it is not known"))?;
+    let Some(Operator::Steps(build)) = operator(&node.op_type) else {
+        return Err(node.refused("it is not known"));
+    };
     let used = node.output.iter().rposition(|name| !name.is_empty()).map_or(0, |last| last + 1);
     let outputs = build(planner, node, inputs)?;
     if outputs.len() < used {

@@ -38,7 +38,7 @@ fn parameters(
     }
     let value = planner.value(x).clone();
     let physical = value.physical();
-    let shape = if planner.is_channels_last(x) { crate::planner::channels_to_end(&shape) } else { shape };
+    let shape = if planner.is_channels_last(x) { crate::value::channels_to_end(&shape) } else { shape };
     let own = physical.clone();
     let rows = Rows::new(&physical, &[own, shape.clone(), shape]);
     let scale = planner.plain(scale)?;

@@ -46,7 +46,10 @@ impl Axes {
         if node.text("keep_aspect_ratio_policy", "stretch") != "stretch" {
             return Err(node.refused("attribute \"keep_aspect_ratio_policy\""));
         }
-        let scales = optional(inputs, if old { 1 } else { 2 }).and_then(|id| planner.constant(id));
+        let scales = match optional(inputs, if old { 1 } else { 2 }) {
+            Some(id) => Some(planner.known(node, id)?),
+            None => None,
+        };
         let scales = scales.as_ref().and_then(|scales| scales.floats()).filter(|scales| !scales.is_empty());
         let (shape, scales): (Vec<usize>, Vec<f64>) = match (scales, optional(inputs, 3)) {
             (Some(scales), _) if scales.len() == 4 => {
@@ -67,7 +70,7 @@ impl Axes {
                     sizes.iter().zip(&dims).map(|(&size, &dim)| size as f64 / dim.max(1) as f64).collect();
                 (sizes, scales)
             }
-            _ => return Err(node.refused("scales that are not constant")),
+            _ => return Err(node.damaged("neither four scales nor sizes")),
         };
         count(&shape)?;
         if shape[..2] != dims[..2] || dims.contains(&0) {
