@@ -1,17 +1,23 @@
 //! The operators: each builds the steps of a node whose input shapes are known.
 
+mod attention;
 mod bytes;
 mod conv;
+mod conv_integer;
 mod conv_transpose;
+mod dynamic_quantize;
+mod einsum;
 mod elementwise;
 mod functions;
 mod fusion;
+mod gemm;
 mod grid_sample;
 mod groups;
 mod index;
 mod inputs;
 mod lines;
 mod matmul;
+mod matmul_integer;
 mod movement;
 mod non_zero;
 mod normalise;
@@ -20,8 +26,12 @@ mod quantize;
 mod recurrent;
 mod reduce;
 mod resize;
+mod reverse_sequence;
+mod rotary;
+mod scatter;
 mod shape;
 mod suppression;
+mod top_k;
 
 use opendr_engine::Result;
 use opendr_onnx::proto::NodeProto;
@@ -65,9 +75,11 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Asinh", functions::build),
     ("Atan", functions::build),
     ("Atanh", functions::build),
+    ("Attention", attention::build),
     ("AveragePool", pool::pool),
     ("BatchNormalization", normalise::batch),
     ("Cast", elementwise::cast),
+    ("CastLike", elementwise::cast_like),
     ("Ceil", functions::build),
     ("Celu", functions::build),
     ("Clip", elementwise::clip),
@@ -75,6 +87,7 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Constant", shape::constant),
     ("ConstantOfShape", shape::constant_of_shape),
     ("Conv", conv::conv),
+    ("ConvInteger", conv_integer::build),
     ("ConvTranspose", conv_transpose::build),
     ("Cos", functions::build),
     ("Cosh", functions::build),
@@ -83,11 +96,14 @@ const OPERATORS: &[(&str, Build)] = &[
     ("DequantizeLinear", quantize::dequantize),
     ("Div", elementwise::binary),
     ("Dropout", shape::identity),
+    ("DynamicQuantizeLinear", dynamic_quantize::build),
+    ("Einsum", einsum::build),
     ("Elu", functions::build),
     ("Equal", elementwise::binary),
     ("Erf", elementwise::unary),
     ("Exp", elementwise::unary),
     ("Expand", movement::expand),
+    ("EyeLike", lines::eye_like),
     ("Flatten", shape::flatten),
     ("Floor", functions::build),
     ("GRU", recurrent::gru),
@@ -95,7 +111,7 @@ const OPERATORS: &[(&str, Build)] = &[
     ("GatherElements", index::gather_elements),
     ("GatherND", index::gather_nd),
     ("Gelu", elementwise::unary),
-    ("Gemm", matmul::gemm),
+    ("Gemm", gemm::build),
     ("GlobalAveragePool", pool::global),
     ("GlobalMaxPool", pool::global),
     ("Greater", elementwise::binary),
@@ -117,6 +133,7 @@ const OPERATORS: &[(&str, Build)] = &[
     ("LogSoftmax", normalise::softmax),
     ("LpNormalization", groups::lp),
     ("MatMul", matmul::matmul),
+    ("MatMulInteger", matmul_integer::build),
     ("Max", elementwise::variadic),
     ("MaxPool", pool::pool),
     ("Mean", elementwise::variadic),
@@ -148,9 +165,12 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Relu", elementwise::unary),
     ("Reshape", shape::reshape),
     ("Resize", resize::resize),
+    ("ReverseSequence", reverse_sequence::build),
+    ("RotaryEmbedding", rotary::build),
     ("Round", functions::build),
-    ("ScatterElements", index::scatter_elements),
-    ("ScatterND", index::scatter_nd),
+    ("Scatter", scatter::elements),
+    ("ScatterElements", scatter::elements),
+    ("ScatterND", scatter::nd),
     ("Selu", functions::build),
     ("Shape", shape::shape),
     ("Shrink", functions::build),
@@ -174,10 +194,11 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Tanh", elementwise::unary),
     ("ThresholdedRelu", functions::build),
     ("Tile", movement::tile),
-    ("TopK", index::top_k),
+    ("TopK", top_k::top_k),
     ("Transpose", movement::transpose),
     ("Trilu", lines::triangle),
     ("Unsqueeze", shape::unsqueeze),
+    ("Upsample", resize::resize),
     ("Where", elementwise::select),
     ("Xor", elementwise::binary),
 ];

@@ -88,6 +88,15 @@ pub(crate) fn quantize(
     planner.emit(QuantizeStep { to, rows }, &reads, &[(to, value.shape, value.layout)])
 }
 
+/// Quantises to unsigned bytes with a scale and a zero point that a run computes.
+pub(super) fn with_scale(planner: &mut Planner<'_>, x: Id, [scale, zero]: [Id; 2]) -> Result<Id> {
+    let value = planner.value(x).clone();
+    let physical = value.physical();
+    let rows = Rows::new(&physical, &[physical.clone(), Vec::new(), Vec::new()]);
+    let step = QuantizeStep { to: Kind::U8, rows };
+    planner.emit_one(step, &[x, scale, zero], Kind::U8, value.shape, value.layout)
+}
+
 struct QuantizeStep {
     to: Kind,
     rows: Rows,
