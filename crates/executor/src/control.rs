@@ -2,35 +2,34 @@
 
 use std::sync::Arc;
 
-use opendr_engine::{Error, Result};
+use opendr_engine::Result;
 use opendr_onnx::proto::NodeProto;
 
 use crate::attributes::Attributes;
 use crate::constant::{Constant, MAX_BYTES, too_many};
 use crate::graph::{Graph, Output};
-use crate::stages::{Run, Stages};
-use crate::tensor::{Kind, Tensor};
+use crate::tensor::Kind;
 
 type Inputs<'a> = &'a [Option<Arc<Constant>>];
 
-/// Runs an `If` or a `Loop` whose graphs are `bodies`.
+/// Runs one of the graphs of a node on its inputs, and returns its outputs.
+pub(crate) type RunGraph<'a> = dyn FnMut(usize, &[Arc<Constant>]) -> Result<Vec<Arc<Constant>>> + 'a;
+
+/// Runs an `If` or a `Loop` with these graphs.
 pub(crate) fn run(
     node: &NodeProto,
     graphs: &[Arc<Graph>],
-    bodies: &mut [Stages],
-    run: &mut Run<'_>,
     inputs: Inputs<'_>,
+    run_graph: &mut RunGraph<'_>,
 ) -> Result<Vec<Arc<Constant>>> {
-    match (node.op_type.as_str(), graphs, bodies) {
-        ("If", _, branches) => {
+    match (node.op_type.as_str(), graphs) {
+        ("If", [_, _]) => {
             let condition = value(node, inputs, 0)?.truth(node)?;
-            let branch = branches.get_mut(usize::from(!condition));
-            let branch = branch.ok_or_else(|| node.damaged("a branch is missing"))?;
             let captured: Vec<Arc<Constant>> =
                 (1..inputs.len()).map(|slot| value(node, inputs, slot).cloned()).collect::<Result<_>>()?;
-            run_graph(branch, run, &captured)
+            run_graph(usize::from(!condition), &captured)
         }
-        (_, [graph], [body]) => Loop::new(node, graph, inputs)?.run(body, run),
+        (_, [body]) => Loop::new(node, body, inputs)?.run(run_graph),
         _ => Err(node.damaged("its graph is missing")),
     }
 }
@@ -38,25 +37,6 @@ pub(crate) fn run(
 fn value<'a>(node: &NodeProto, inputs: Inputs<'a>, slot: usize) -> Result<&'a Arc<Constant>> {
     let value = inputs.get(slot).and_then(Option::as_ref);
     value.ok_or_else(|| node.damaged(&format!("it has no input {slot}")))
-}
-
-/// Runs a graph within a node, without the observer of the graph around it.
-fn run_graph(graph: &mut Stages, run: &mut Run<'_>, inputs: &[Arc<Constant>]) -> Result<Vec<Arc<Constant>>> {
-    let tensors = inputs.iter().map(|input| {
-        input
-            .tensor()
-            .ok_or_else(|| Error::unsupported("16-bit floats in a branch or a loop of the ONNX model"))
-    });
-    let tensors = tensors.collect::<Result<Vec<Tensor<'_>>>>()?;
-    let mut inner =
-        Run { arena: &mut *run.arena, compute: run.compute, looped: run.looped, observe: &mut |_| () };
-    let mut outputs = Vec::new();
-    let ran = graph.run(&mut inner, &tensors, &mut |tensors| {
-        outputs.extend(tensors.iter().map(|tensor| Arc::new(Constant::copied(tensor))));
-        Ok(())
-    });
-    run.looped = inner.looped;
-    ran.map(|()| outputs)
 }
 
 /// A loop in a run.
@@ -101,20 +81,19 @@ impl<'a> Loop<'a> {
         Ok(Self { node, graph, trips, condition, state: state.to_vec(), captured: captured.to_vec() })
     }
 
-    fn run(mut self, body: &mut Stages, run: &mut Run<'_>) -> Result<Vec<Arc<Constant>>> {
+    fn run(mut self, run_graph: &mut RunGraph<'_>) -> Result<Vec<Arc<Constant>>> {
         let states = self.state.len();
         let scanned = self.graph.outputs.len() - 1 - states;
         let mut scans: Vec<Vec<Arc<Constant>>> = vec![Vec::new(); scanned];
         let (mut iteration, mut bytes) = (0_i64, 0_usize);
         while self.condition && self.trips.is_none_or(|trips| iteration < trips) {
-            run.count_iteration()?;
             let mut inputs = vec![
                 Arc::new(Constant::from_ints(Vec::new(), &[iteration])),
                 Arc::new(Constant::of(Kind::Bool, Vec::new(), &[u8::from(self.condition)])),
             ];
             inputs.append(&mut self.state);
             inputs.extend(self.captured.iter().cloned());
-            let mut outputs = run_graph(body, run, &inputs)?.into_iter();
+            let mut outputs = run_graph(0, &inputs)?.into_iter();
             let condition =
                 outputs.next().ok_or_else(|| self.node.damaged("its body returns no condition"))?;
             self.condition = condition.truth(self.node)?;

@@ -9,7 +9,8 @@ use opendr_onnx::proto::NodeProto;
 use crate::constant::Given;
 use crate::declared::Declared;
 use crate::reading::Model;
-use crate::stages::{Run, Stages};
+use crate::run::Run;
+use crate::stages::Stages;
 use crate::tensor::{Kind, Tensor};
 
 /// An opened model.

@@ -43,17 +43,17 @@ impl Model {
 }
 
 /// Reads a graph within a model.
-pub(crate) struct Reader<'a> {
-    pub(crate) opset: i64,
+struct Reader<'a> {
+    opset: i64,
     /// Constants of the graphs around it.
-    pub(crate) outer: &'a Constants,
+    outer: &'a Constants,
     /// Number of the graphs around it.
-    pub(crate) depth: usize,
+    depth: usize,
 }
 
 impl Reader<'_> {
     /// Reads a graph with these inputs.
-    pub(crate) fn read(&self, mut graph: GraphProto, inputs: Vec<String>) -> Result<Graph> {
+    fn read(&self, mut graph: GraphProto, inputs: Vec<String>) -> Result<Graph> {
         if self.depth > MAX_DEPTH {
             return Err(Error::format(format!("the ONNX model nests graphs deeper than {MAX_DEPTH} levels")));
         }
@@ -73,7 +73,10 @@ impl Reader<'_> {
         // The passes know nothing of branches and bodies: these are taken out of the graph, and what they read becomes inputs of
         // their nodes.
         let mut captured = Constants::new();
-        let bodies = subgraphs::take(self, &mut graph, &mut captured)?;
+        let read = |body: GraphProto, inputs: Vec<String>, outer: &Constants| {
+            Reader { opset: self.opset, outer, depth: self.depth + 1 }.read(body, inputs)
+        };
+        let bodies = subgraphs::take(&mut graph, self.outer, &mut captured, read)?;
         simplify(&mut graph, self.opset)?;
         let mut constants: Constants = HashMap::new();
         for tensor in std::mem::take(&mut graph.initializer) {

@@ -16,6 +16,7 @@ use crate::graph::Graph;
 use crate::ops::{self, Operator};
 use crate::plan::Plan;
 use crate::planning::Cut;
+use crate::run::Run;
 use crate::tensor::Tensor;
 
 /// Plans for different shapes that a stage keeps.
@@ -23,37 +24,6 @@ const MAX_PLANS: usize = 8;
 
 /// Maximum number of stages of a graph.
 const MAX_STAGES: usize = 1 << 10;
-
-/// Bytes of all tensors of the iterations of loops in a run, beyond which the run ends with an error.
-const MAX_LOOP_BYTES: u64 = 1 << 40;
-
-/// Bytes that an iteration counts at least.
-const MIN_LOOP_BYTES: u64 = 1 << 18;
-
-/// What a run needs besides the graph.
-pub(crate) struct Run<'a> {
-    pub(crate) arena: &'a mut Arena,
-    pub(crate) compute: &'a Compute,
-    /// Bytes of the iterations of loops so far.
-    pub(crate) looped: u64,
-    /// Called after the steps of a node.
-    pub(crate) observe: &'a mut dyn FnMut(&NodeProto),
-}
-
-impl Run<'_> {
-    /// Counts an iteration of a loop.
-    ///
-    /// # Errors
-    /// `Unsupported` where the loops of the run have taken too long.
-    pub(crate) fn count_iteration(&mut self) -> Result<()> {
-        let bytes = (self.arena.bytes() as u64).max(MIN_LOOP_BYTES);
-        self.looped = self.looped.saturating_add(bytes);
-        if self.looped > MAX_LOOP_BYTES {
-            return Err(Error::unsupported("the loops of the ONNX model do not end"));
-        }
-        Ok(())
-    }
-}
 
 /// Receives the outputs of a graph.
 pub(crate) type Outputs<'a> = dyn FnMut(&[Tensor<'_>]) -> Result<()> + 'a;
@@ -200,9 +170,31 @@ impl Stages {
             .bodies
             .remove(&key)
             .unwrap_or_else(|| graphs.iter().map(|graph| Self::new(Arc::clone(graph))).collect());
-        let outputs = control::run(node, graphs, &mut bodies, run, &inputs);
+        let outputs = control::run(node, graphs, &inputs, &mut |graph, inputs| {
+            let body = bodies.get_mut(graph).ok_or_else(|| Error::internal("a graph that is not there"))?;
+            body.run_within(run, inputs)
+        });
         self.bodies.insert(key, bodies);
         outputs
+    }
+
+    /// Runs a graph within a node, without the observer of the graph around it.
+    fn run_within(&mut self, run: &mut Run<'_>, inputs: &[Arc<Constant>]) -> Result<Vec<Arc<Constant>>> {
+        run.count_iteration()?;
+        let tensors = inputs.iter().map(|input| {
+            let tensor = input.tensor();
+            tensor.ok_or_else(|| Error::unsupported("16-bit floats in a branch or a loop of the ONNX model"))
+        });
+        let tensors = tensors.collect::<Result<Vec<Tensor<'_>>>>()?;
+        let mut inner =
+            Run { arena: &mut *run.arena, compute: run.compute, looped: run.looped, observe: &mut |_| () };
+        let mut outputs = Vec::new();
+        let ran = self.run(&mut inner, &tensors, &mut |tensors| {
+            outputs.extend(tensors.iter().map(|tensor| Arc::new(Constant::copied(tensor))));
+            Ok(())
+        });
+        run.looped = inner.looped;
+        ran.map(|()| outputs)
     }
 
     /// Makes the plan for these inputs the last one of its stage.

@@ -9,7 +9,6 @@ use opendr_onnx::proto::{AttributeProto, GraphProto, NodeProto, TensorProto, Typ
 use crate::attributes::Attributes;
 use crate::constant::Constant;
 use crate::graph::{Constants, Graph};
-use crate::reading::Reader;
 
 /// Maximum nesting depth of graphs.
 pub(crate) const MAX_DEPTH: usize = 16;
@@ -27,12 +26,14 @@ pub(crate) fn bodies<'a>(graph: &'a Graph, node: &NodeProto) -> Result<(usize, &
     found.ok_or_else(|| node.damaged("it has no graph"))
 }
 
-/// Takes the graphs out of the nodes, and reads them. What they read of the graph around them becomes an input of the node and of
-/// the graph, behind the others; constants they have themselves, and `captured` has them too.
+/// Takes the graphs out of the nodes, and reads them with `read`. What they read of the graph around them becomes an input of the node and of
+/// the graph, behind the others; constants of the graph and of those around it (`outer`) they have themselves, and
+/// `captured` has them too.
 pub(crate) fn take(
-    reader: &Reader<'_>,
     graph: &mut GraphProto,
+    outer: &Constants,
     captured: &mut Constants,
+    read: impl Fn(GraphProto, Vec<String>, &Constants) -> Result<Graph>,
 ) -> Result<Vec<Vec<Arc<Graph>>>> {
     let (mut nodes, mut all) = (std::mem::take(&mut graph.node), Vec::new());
     let initializers: HashMap<&str, &TensorProto> =
@@ -56,7 +57,7 @@ pub(crate) fn take(
                 if !captured.contains_key(&name) {
                     captured.insert(name, Arc::new(Constant::from_tensor(tensor)?));
                 }
-            } else if let Some(constant) = reader.outer.get(&name) {
+            } else if let Some(constant) = outer.get(&name) {
                 captured.insert(name, Arc::clone(constant));
             } else if !names.contains(&name) {
                 names.push(name);
@@ -68,22 +69,21 @@ pub(crate) fn take(
         } else {
             0
         };
-        let inner = Reader { outer: captured, depth: reader.depth + 1, ..*reader };
-        let mut read = Vec::new();
+        let mut own = Vec::new();
         for body in graphs {
             let mut inputs = inputs(&body)?;
             if inputs.len() != formal {
                 return Err(node.damaged("its inputs are not those of its graph"));
             }
             inputs.extend(names.iter().cloned());
-            read.push(Arc::new(inner.read(body, inputs)?));
+            own.push(Arc::new(read(body, inputs, captured)?));
         }
         node.input.append(&mut names);
         for (name, value) in [(BODIES, all.len()), (STATES, formal.saturating_sub(2))] {
             let i = i64::try_from(value).unwrap_or(-1);
             node.attribute.push(AttributeProto { name: name.to_owned(), i, ..AttributeProto::default() });
         }
-        all.push(read);
+        all.push(own);
     }
     graph.node = nodes;
     Ok(all)
