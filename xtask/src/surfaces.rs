@@ -24,7 +24,7 @@ pub const EXAMPLES: [&str; 22] = [
     "mfcc",
     "own_module",
     "ros1_probe",
-    "run_rten",
+    "run_onnx",
     "serve_environments",
     "shrink",
     "signals",

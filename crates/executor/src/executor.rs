@@ -1,25 +1,24 @@
 //! An opened model: plans, memory and runs.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use opendr_engine::{Error, Result};
 use opendr_kernels::{Arena, Compute};
+use opendr_onnx::proto::NodeProto;
 
-use crate::graph::Graph;
-use crate::ops;
-use crate::plan::Plan;
+use crate::constant::Given;
+use crate::declared::Declared;
+use crate::reading::Model;
+use crate::run::Run;
+use crate::stages::Stages;
 use crate::tensor::{Kind, Tensor};
 
-/// Plans for different shapes that are kept.
-const MAX_PLANS: usize = 8;
-
-/// An opened model. Clones share the weights; each has memory of its own.
+/// An opened model.
 pub struct Executor {
-    graph: Arc<Graph>,
+    inputs: Vec<Declared>,
+    outputs: Vec<Declared>,
+    stages: Stages,
     compute: Compute,
-    /// The plan that was used last comes last.
-    plans: Vec<Plan>,
     arena: Arena,
 }
 
@@ -40,35 +39,38 @@ impl Executor {
     /// # Errors
     /// `Format` when the bytes are not an ONNX model, `Unsupported` with the operator or type that the executor lacks.
     pub fn open(model: &[u8], compute: Compute) -> Result<Self> {
-        let graph = Arc::new(Graph::read(model, ops::is_supported)?);
-        let mut executor = Self { graph, compute, plans: Vec::new(), arena: Arena::new(0) };
-        let shapes: Option<Vec<Vec<usize>>> =
-            executor.graph.inputs.iter().map(|input| input.dims.iter().copied().collect()).collect();
-        if let Some(shapes) = shapes {
-            executor.plan(shapes)?;
+        let Model { graph, inputs, outputs } = Model::read(model)?;
+        let shape = |input: &Declared| {
+            let shape = input.dims.iter().copied().collect::<Option<Vec<usize>>>()?;
+            Some(Given { kind: input.kind, shape, value: None })
+        };
+        let given: Option<Vec<Given>> = inputs.iter().map(shape).collect();
+        let (mut stages, mut arena) = (Stages::new(graph), Arena::new(0));
+        if let Some(given) = given {
+            stages.prepare(&compute, &mut arena, given)?;
         }
-        Ok(executor)
+        Ok(Self { inputs, outputs, stages, compute, arena })
     }
 
     /// Returns the names and element types of the inputs.
     pub fn inputs(&self) -> impl Iterator<Item = (&str, Kind)> {
-        self.graph.inputs.iter().map(|input| (input.name.as_str(), input.kind))
+        self.inputs.iter().map(|input| (input.name.as_str(), input.kind))
     }
 
     /// Returns the declared dimensions of the inputs, `None` where one is open.
     pub fn input_shapes(&self) -> impl Iterator<Item = &[Option<usize>]> {
-        self.graph.inputs.iter().map(|input| input.dims.as_slice())
+        self.inputs.iter().map(|input| input.dims.as_slice())
     }
 
     /// Returns the names and element types of the outputs.
     pub fn outputs(&self) -> impl Iterator<Item = (&str, Kind)> {
-        self.graph.outputs.iter().map(|output| (output.name.as_str(), output.kind))
+        self.outputs.iter().map(|output| (output.name.as_str(), output.kind))
     }
 
     /// Returns whether the model has a plan, which it has from the beginning where the shapes of its inputs are
     /// declared.
     pub fn is_planned(&self) -> bool {
-        !self.plans.is_empty()
+        self.stages.is_planned()
     }
 
     /// Returns the bytes of the memory in which tensors lie.
@@ -86,7 +88,7 @@ impl Executor {
         inputs: &[Tensor<'_>],
         sink: &mut dyn FnMut(&[Tensor<'_>]) -> Result<()>,
     ) -> Result<()> {
-        self.run_observed(inputs, sink, |_| ())
+        self.run_observed(inputs, sink, &mut |_| ())
     }
 
     /// Runs the model once, and returns the time of every node that has steps, in their order.
@@ -94,71 +96,30 @@ impl Executor {
     /// # Errors
     /// Those of [`Executor::run`].
     pub fn profile(&mut self, inputs: &[Tensor<'_>]) -> Result<Vec<LayerTime>> {
-        let mut times: Vec<(usize, Duration)> = Vec::new();
+        let mut times: Vec<LayerTime> = Vec::new();
         let mut last = Instant::now();
-        self.run_observed(inputs, &mut |_| Ok(()), |node| {
+        self.run_observed(inputs, &mut |_| Ok(()), &mut |node| {
             let now = Instant::now();
-            times.push((node, now - last));
+            let name = node.output.first().cloned().unwrap_or_default();
+            times.push(LayerTime { name, operator: node.op_type.clone(), time: now - last });
             last = now;
         })?;
-        let named = |(node, time): (usize, Duration)| {
-            let node = self.graph.nodes.get(node);
-            let text = |value: Option<&String>| value.cloned().unwrap_or_default();
-            LayerTime {
-                name: text(node.and_then(|node| node.output.first())),
-                operator: text(node.map(|node| &node.op_type)),
-                time,
-            }
-        };
-        Ok(times.into_iter().map(named).collect())
+        Ok(times)
     }
 
     fn run_observed(
         &mut self,
         inputs: &[Tensor<'_>],
         sink: &mut dyn FnMut(&[Tensor<'_>]) -> Result<()>,
-        observe: impl FnMut(usize),
+        observe: &mut dyn FnMut(&NodeProto),
     ) -> Result<()> {
         self.check(inputs)?;
-        let fits = |plan: &Plan| plan.shapes.iter().zip(inputs).all(|(shape, input)| shape == input.shape);
-        match self.plans.iter().position(fits) {
-            Some(index) if index + 1 == self.plans.len() => {}
-            Some(index) => self.plans[index..].rotate_left(1),
-            None => self.plan(inputs.iter().map(|input| input.shape.to_vec()).collect())?,
-        }
-        let Some(plan) = self.plans.last() else { return Err(Error::internal("a model without a plan")) };
-        plan.run(&mut self.arena, inputs, &self.compute, observe)?;
-        const MOST: usize = 32;
-        let empty = Tensor { shape: &[], data: crate::tensor::Data::U8(&[]) };
-        let mut few = [empty; MOST];
-        let many;
-        let output = |index| plan.output(index, &self.arena, inputs).unwrap_or(empty);
-        let outputs = if plan.output_count() <= MOST {
-            let few = &mut few[..plan.output_count()];
-            few.iter_mut().enumerate().for_each(|(index, slot)| *slot = output(index));
-            &*few
-        } else {
-            many = (0..plan.output_count()).map(output).collect::<Vec<_>>();
-            &many
-        };
-        sink(outputs)
-    }
-
-    fn plan(&mut self, shapes: Vec<Vec<usize>>) -> Result<()> {
-        let plan = Plan::new(&self.graph, &self.compute, shapes)?;
-        if plan.arena_bytes > self.arena.bytes() {
-            self.arena = Arena::new(0);
-            self.arena = Arena::new(plan.arena_bytes);
-        }
-        if self.plans.len() >= MAX_PLANS {
-            self.plans.remove(0);
-        }
-        self.plans.push(plan);
-        Ok(())
+        let mut run = Run { arena: &mut self.arena, compute: &self.compute, looped: 0, observe };
+        self.stages.run(&mut run, inputs, sink)
     }
 
     fn check(&self, inputs: &[Tensor<'_>]) -> Result<()> {
-        let declared = &self.graph.inputs;
+        let declared = &self.inputs;
         if declared.len() != inputs.len() {
             return Err(Error::invalid_input(format!(
                 "the model has {} inputs, but received {}",
@@ -186,8 +147,8 @@ impl Executor {
 impl std::fmt::Debug for Executor {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Executor")
-            .field("inputs", &self.graph.inputs)
-            .field("outputs", &self.graph.outputs)
+            .field("inputs", &self.inputs)
+            .field("outputs", &self.outputs)
             .finish_non_exhaustive()
     }
 }

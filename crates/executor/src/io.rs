@@ -5,7 +5,8 @@ use std::sync::Arc;
 use opendr_engine::Result;
 use opendr_kernels::{Arena, Compute, Number, Region, Rest, Written};
 
-use crate::tensor::{Constant, Data, Tensor};
+use crate::constant::Constant;
+use crate::tensor::{Data, Tensor};
 
 /// Where a tensor lies.
 #[derive(Debug, Clone)]

@@ -6,8 +6,8 @@
 //!
 //! A model is planned once per shape of its inputs: shapes are inferred, what depends on constants only is computed,
 //! activations and sums are fused into convolutions, image tensors lie with channels last, and every tensor has a
-//! place in one arena. A run then allocates nothing. `opendr-inference` runs models through this crate and falls back
-//! to another runtime for what it refuses.
+//! place in one arena. A run then allocates nothing. Where a shape depends on the elements of a run, the graph is cut: what
+//! comes after is planned when they are known. `opendr-inference` runs models through this crate.
 //!
 //! ```
 //! use opendr_executor::{Data, Executor, Tensor};
@@ -29,14 +29,27 @@
 //! ```
 
 mod attributes;
+mod constant;
+mod control;
+mod declared;
+mod emit;
 mod executor;
 mod graph;
 mod io;
+mod memory;
 mod ops;
+mod order;
 mod plan;
 mod planner;
+mod planning;
+mod reading;
 mod remap;
+mod run;
+mod simplify;
+mod stages;
+mod subgraphs;
 mod tensor;
+mod value;
 
 pub use executor::{Executor, LayerTime};
 pub use ops::supported_operators;

@@ -1,22 +1,17 @@
 //! A plan: steps with their places in the arena.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use opendr_engine::{Error, Result};
-use opendr_kernels::{ALIGNMENT, Arena, Compute, Region};
+use opendr_engine::Result;
+use opendr_kernels::{Arena, Compute, Region};
 
+use crate::constant::{Constant, Given, MAX_BYTES, too_many};
 use crate::graph::Graph;
 use crate::io::{Io, Kernel, Place};
-use crate::ops;
-use crate::planner::{Id, Planner, Source};
+use crate::memory::{lives, place};
+use crate::planning::{Cut, Planned, planned};
 use crate::tensor::{Data, Kind, Tensor};
-
-/// Bytes of the arena beyond which a model is refused.
-const MAX_ARENA: usize = 1 << 32;
-
-/// Bytes behind the last tensor.
-const SLACK: usize = 256;
+use crate::value::{Id, Source};
 
 struct PlannedStep {
     kernel: Box<dyn Kernel>,
@@ -32,23 +27,43 @@ struct PlannedOutput {
     shape: Vec<usize>,
 }
 
+/// The nodes that remain after the steps of a plan.
+pub(crate) struct Remaining {
+    /// Names of the outputs of the plan, which the remaining nodes read.
+    pub(crate) names: Vec<String>,
+    /// Nodes whose outputs have shapes that depend on the elements of their inputs. They run after the steps.
+    pub(crate) hosts: Vec<usize>,
+    /// The stage that runs after them.
+    pub(crate) stage: usize,
+}
+
 /// The steps for one shape of the inputs.
 pub(crate) struct Plan {
-    pub(crate) shapes: Vec<Vec<usize>>,
+    pub(crate) given: Vec<Given>,
+    /// `None` where the steps compute the outputs of the graph.
+    pub(crate) remaining: Option<Remaining>,
     steps: Vec<PlannedStep>,
     outputs: Vec<PlannedOutput>,
     pub(crate) arena_bytes: usize,
 }
 
 impl Plan {
-    pub(crate) fn new(graph: &Graph, compute: &Compute, shapes: Vec<Vec<usize>>) -> Result<Self> {
-        let (planner, outputs) = planned(graph, compute, &shapes)?;
+    /// Plans the nodes of a graph that can be planned; `stage` returns the stage of those that cannot.
+    pub(crate) fn new(
+        graph: &Graph,
+        compute: &Compute,
+        given: Vec<Given>,
+        stage: impl FnOnce(&Cut) -> Result<usize>,
+    ) -> Result<Self> {
+        let Planned { planner, outputs, cut } = planned(graph, compute, &given)?;
+        let remaining = match cut {
+            Some(cut) => Some(Remaining { stage: stage(&cut)?, names: cut.names, hosts: cut.hosts }),
+            None => None,
+        };
         let lives = lives(&planner, &outputs);
         let (starts, arena_bytes) = place(&planner.buffers, &lives);
-        if arena_bytes > MAX_ARENA {
-            return Err(Error::unsupported(format!(
-                "the ONNX model needs {arena_bytes} bytes for its tensors"
-            )));
+        if arena_bytes > MAX_BYTES {
+            return Err(too_many(arena_bytes));
         }
         let values = &planner.values;
         let place = |id: Id| -> Place {
@@ -83,7 +98,7 @@ impl Plan {
                 node: step.node,
             });
         }
-        Ok(Self { shapes, steps, outputs, arena_bytes })
+        Ok(Self { given, remaining, steps, outputs, arena_bytes })
     }
 
     /// Runs all steps; `observe` is called after each with the index of its node.
@@ -120,137 +135,25 @@ impl Plan {
             }
             Place::Absent => return None,
         };
-        let data = match output.kind {
-            Kind::F32 => Data::F32(from.get(region)),
-            Kind::I64 => Data::I64(from.get(region)),
-            Kind::I32 => Data::I32(from.get(region)),
-            Kind::U8 => Data::U8(from.get(region)),
-            Kind::I8 => Data::I8(from.get(region)),
-            Kind::Bool => Data::Bool(from.get(region)),
-            Kind::F16 => return None,
-        };
-        Some(Tensor { shape: &output.shape, data })
+        Some(Tensor { shape: &output.shape, data: Data::read(output.kind, from, region)? })
+    }
+
+    /// Returns an output after a run as a tensor of its own: the same one where it is an input or a constant.
+    pub(crate) fn owned_output(
+        &self,
+        index: usize,
+        arena: &Arena,
+        inputs: &[Tensor<'_>],
+        owned: &[Arc<Constant>],
+    ) -> Option<Arc<Constant>> {
+        match &self.outputs.get(index)?.place {
+            Place::Constant(constant) => Some(Arc::clone(constant)),
+            Place::Input(at) if owned.get(*at).is_some() => owned.get(*at).cloned(),
+            _ => Some(Arc::new(Constant::copied(&self.output(index, arena, inputs)?))),
+        }
     }
 
     pub(crate) fn output_count(&self) -> usize {
         self.outputs.len()
     }
-}
-
-/// Builds the steps of all nodes; returns them with the outputs of the graph.
-fn planned<'a>(
-    graph: &'a Graph,
-    compute: &'a Compute,
-    shapes: &[Vec<usize>],
-) -> Result<(Planner<'a>, Vec<Id>)> {
-    let mut planner = Planner::new(graph, compute, shapes)?;
-    for (index, node) in graph.nodes.iter().enumerate() {
-        if planner.is_fused(index) {
-            continue;
-        }
-        planner.node = index;
-        if node.op_type == "DequantizeLinear" && planner.defer(index) {
-            continue;
-        }
-        let outputs = match ops::build_on_bytes(&mut planner, node)? {
-            Some(outputs) => outputs,
-            None => build(&mut planner, index)?,
-        };
-        for (name, id) in node.output.iter().zip(outputs) {
-            planner.name(name, id);
-        }
-    }
-    let mut outputs = Vec::new();
-    for output in &graph.outputs {
-        materialise(&mut planner, &output.name)?;
-        let id = planner.named(&output.name).ok_or_else(|| {
-            Error::format(format!("damaged ONNX model: nothing produces the output {:?}", output.name))
-        })?;
-        if planner.kind(id) != output.kind {
-            return Err(Error::format(format!(
-                "damaged ONNX model: the output {:?} is declared as {:?}, but is {:?}",
-                output.name,
-                output.kind,
-                planner.kind(id)
-            )));
-        }
-        outputs.push(planner.plain(id)?);
-    }
-    Ok((planner, outputs))
-}
-
-/// Builds the steps of a node whose inputs are read as they are.
-fn build(planner: &mut Planner<'_>, index: usize) -> Result<Vec<Id>> {
-    let node = &planner.graph.nodes[index];
-    for name in &node.input {
-        materialise(planner, name)?;
-    }
-    planner.node = index;
-    let inputs: Vec<Option<Id>> = node.input.iter().map(|name| planner.named(name)).collect();
-    ops::build(planner, node, &inputs)
-}
-
-/// Dequantises a value that has been deferred.
-fn materialise(planner: &mut Planner<'_>, name: &str) -> Result<()> {
-    let Some(index) = planner.take_deferred(name) else { return Ok(()) };
-    planner.node = index;
-    let node = &planner.graph.nodes[index];
-    // The inputs of a deferred node are not deferred.
-    let inputs: Vec<Option<Id>> = node.input.iter().map(|name| planner.named(name)).collect();
-    for (name, id) in node.output.iter().zip(ops::build(planner, node, &inputs)?) {
-        planner.name(name, id);
-    }
-    Ok(())
-}
-
-/// Returns the first and last step of every buffer; `None` where nothing needs it.
-fn lives(planner: &Planner<'_>, outputs: &[Id]) -> Vec<Option<[usize; 2]>> {
-    let buffer = |id: Id| match planner.values[id].source {
-        Source::Buffer(buffer, _) => Some(buffer),
-        _ => None,
-    };
-    let mut last: Vec<Option<usize>> = vec![None; planner.buffers.len()];
-    for id in outputs.iter().filter_map(|&id| buffer(id)) {
-        last[id] = Some(planner.steps.len());
-    }
-    let mut lives = vec![None; planner.buffers.len()];
-    for (index, step) in planner.steps.iter().enumerate().rev() {
-        let Some(end) = last[step.buffer] else { continue };
-        lives[step.buffer] = Some([index, end]);
-        for read in step.reads.iter().flatten().filter_map(|&id| buffer(id)) {
-            last[read] = Some(last[read].map_or(index, |last| last.max(index)));
-        }
-    }
-    lives
-}
-
-/// Places buffers so that those that live at the same time do not overlap: the largest first, each at the lowest
-/// free offset.
-fn place(sizes: &[usize], lives: &[Option<[usize; 2]>]) -> (Vec<usize>, usize) {
-    let mut order: Vec<usize> = (0..sizes.len()).filter(|&buffer| lives[buffer].is_some()).collect();
-    order.sort_by_key(|&buffer| std::cmp::Reverse(sizes[buffer]));
-    let mut starts = vec![0; sizes.len()];
-    let mut placed: Vec<usize> = Vec::new();
-    let mut total = 0;
-    for buffer in order {
-        let Some([first, last]) = lives[buffer] else { continue };
-        let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
-        for &other in &placed {
-            if lives[other].is_some_and(|[from, to]| from <= last && first <= to) {
-                let end = taken.entry(starts[other]).or_default();
-                *end = (*end).max(starts[other] + sizes[other]);
-            }
-        }
-        let mut at = 0;
-        for (start, end) in taken {
-            if at + sizes[buffer] <= start {
-                break;
-            }
-            at = at.max(end.next_multiple_of(ALIGNMENT));
-        }
-        starts[buffer] = at;
-        total = total.max(at + sizes[buffer]);
-        placed.push(buffer);
-    }
-    (starts, total + SLACK)
 }

@@ -2,7 +2,7 @@
 
 use opendr_engine::{Error, Result};
 use opendr_kernels::{Arena, Region};
-use opendr_onnx::proto::{DataType, TensorProto};
+use opendr_onnx::proto::DataType;
 
 /// Element type.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -32,6 +32,11 @@ impl Kind {
             Self::F16 => 2,
             Self::U8 | Self::I8 | Self::Bool => 1,
         }
+    }
+
+    /// Returns whether it is the type of indices and sizes.
+    pub(crate) fn is_index(self) -> bool {
+        matches!(self, Self::I64 | Self::I32)
     }
 
     pub(crate) fn from_onnx(kind: i32, name: &str) -> Result<Self> {
@@ -78,7 +83,25 @@ pub enum Data<'a> {
     Bool(&'a [u8]),
 }
 
-impl Data<'_> {
+impl Tensor<'_> {
+    /// A tensor of no elements, in the place of one that nothing reads.
+    pub(crate) const EMPTY: Self = Self { shape: &[0], data: Data::U8(&[]) };
+}
+
+impl<'a> Data<'a> {
+    /// Returns the elements of a region; `None` for 16-bit floats.
+    pub(crate) fn read(kind: Kind, from: &'a Arena, region: Region) -> Option<Self> {
+        Some(match kind {
+            Kind::F32 => Self::F32(from.get(region)),
+            Kind::I64 => Self::I64(from.get(region)),
+            Kind::I32 => Self::I32(from.get(region)),
+            Kind::U8 => Self::U8(from.get(region)),
+            Kind::I8 => Self::I8(from.get(region)),
+            Kind::Bool => Self::Bool(from.get(region)),
+            Kind::F16 => return None,
+        })
+    }
+
     /// Returns the element type.
     pub fn kind(&self) -> Kind {
         match self {
@@ -114,104 +137,4 @@ pub(crate) fn count(shape: &[usize]) -> Result<usize> {
     count.filter(|&count| count <= MAX_ELEMENTS).ok_or_else(|| {
         Error::format(format!("the ONNX model has a tensor of shape {shape:?}, too large for memory"))
     })
-}
-
-/// A tensor that is known before any run.
-#[derive(Debug)]
-pub(crate) struct Constant {
-    pub(crate) kind: Kind,
-    pub(crate) shape: Vec<usize>,
-    pub(crate) data: Arena,
-}
-
-impl Constant {
-    pub(crate) fn region(&self) -> Region {
-        Region { start: 0, bytes: self.shape.iter().product::<usize>() * self.kind.bytes() }
-    }
-
-    pub(crate) fn floats(&self) -> Option<&[f32]> {
-        (self.kind == Kind::F32).then(|| self.data.get(self.region()))
-    }
-
-    pub(crate) fn ints(&self) -> Option<Vec<i64>> {
-        match self.kind {
-            Kind::I64 => Some(self.data.get::<i64>(self.region()).to_vec()),
-            Kind::I32 => {
-                Some(self.data.get::<i32>(self.region()).iter().map(|&value| i64::from(value)).collect())
-            }
-            _ => None,
-        }
-    }
-
-    pub(crate) fn from_ints(shape: Vec<usize>, values: &[i64]) -> Self {
-        Self { kind: Kind::I64, shape, data: Arena::from_numbers(values) }
-    }
-
-    pub(crate) fn from_floats(shape: Vec<usize>, values: &[f32]) -> Self {
-        Self { kind: Kind::F32, shape, data: Arena::from_numbers(values) }
-    }
-
-    /// Reads an initializer.
-    pub(crate) fn from_tensor(tensor: &TensorProto) -> Result<Self> {
-        let name = &tensor.name;
-        if !tensor.external_data.is_empty() || tensor.data_location != 0 {
-            return Err(Error::unsupported(format!(
-                "the ONNX model keeps its weights {name:?} in another file; save it as one file"
-            )));
-        }
-        let damaged = || {
-            Error::format(format!(
-                "damaged ONNX model: the size of the weights {name:?} does not match their shape"
-            ))
-        };
-        let kind = Kind::from_onnx(tensor.data_type, name)?;
-        let dims = tensor.dims.iter().map(|&dim| usize::try_from(dim).ok()).collect::<Option<Vec<_>>>();
-        let shape = dims.ok_or_else(damaged)?;
-        let elements = count(&shape)?;
-        let raw = &tensor.raw_data;
-        let data = if !raw.is_empty() {
-            if raw.len() != elements * kind.bytes() {
-                return Err(damaged());
-            }
-            match kind {
-                Kind::F32 => Arena::from_numbers(
-                    &raw.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect::<Vec<_>>(),
-                ),
-                Kind::I64 => Arena::from_numbers(
-                    &raw.as_chunks().0.iter().map(|&b| i64::from_le_bytes(b)).collect::<Vec<_>>(),
-                ),
-                Kind::I32 => Arena::from_numbers(
-                    &raw.as_chunks().0.iter().map(|&b| i32::from_le_bytes(b)).collect::<Vec<_>>(),
-                ),
-                Kind::F16 => Arena::from_numbers(
-                    &raw.as_chunks().0.iter().map(|&b| u16::from_le_bytes(b)).collect::<Vec<_>>(),
-                ),
-                Kind::Bool => Arena::from_numbers(&raw.iter().map(|&b| u8::from(b != 0)).collect::<Vec<_>>()),
-                Kind::U8 | Kind::I8 => Arena::from_numbers(raw),
-            }
-        } else {
-            let ints = &tensor.int32_data;
-            let length = match kind {
-                Kind::F32 => tensor.float_data.len(),
-                Kind::I64 => tensor.int64_data.len(),
-                _ => ints.len(),
-            };
-            if length != elements {
-                return Err(damaged());
-            }
-            match kind {
-                Kind::F32 => Arena::from_numbers(&tensor.float_data),
-                Kind::I64 => Arena::from_numbers(&tensor.int64_data),
-                Kind::I32 => Arena::from_numbers(ints),
-                Kind::F16 => Arena::from_numbers(&ints.iter().map(|&value| value as u16).collect::<Vec<_>>()),
-                Kind::Bool => {
-                    Arena::from_numbers(&ints.iter().map(|&value| u8::from(value != 0)).collect::<Vec<_>>())
-                }
-                Kind::U8 | Kind::I8 => {
-                    Arena::from_numbers(&ints.iter().map(|&value| value as u8).collect::<Vec<_>>())
-                }
-            }
-        };
-        Ok(Self { kind, shape, data })
-    }
 }

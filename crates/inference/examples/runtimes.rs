@@ -10,8 +10,7 @@ use std::time::Instant;
 
 use opendr_engine::{Random, Result};
 use opendr_inference::{
-    ElementType, GraphExecutor, OnnxRuntime, Runtime, Session, SessionOptions, TensorData, TensorInfo,
-    TensorView,
+    Builtin, ElementType, OnnxRuntime, Runtime, Session, SessionOptions, TensorData, TensorInfo, TensorView,
 };
 
 const THREADS: [usize; 2] = [1, 2];
@@ -83,7 +82,7 @@ fn name(file: &str) -> &str {
 /// Prints the time of the nodes of a model, the longest first.
 fn print_layers(file: &str, bytes: &[u8]) -> Result<()> {
     let mut executor = opendr_executor::Executor::open(bytes, opendr_kernels::Compute::single())?;
-    let infos = Session::open_with(&GraphExecutor, bytes, SessionOptions::default())?.inputs().to_vec();
+    let infos = Session::open_with(&Builtin, bytes, SessionOptions::default())?.inputs().to_vec();
     let owned: Vec<Owned> = infos.iter().map(Owned::random).collect();
     let tensors: Vec<opendr_executor::Tensor<'_>> = owned.iter().filter_map(Owned::of_executor).collect();
     let mut least: Vec<opendr_executor::LayerTime> = executor.profile(&tensors)?;
@@ -130,7 +129,7 @@ fn compare(
     onnx_runtime: &dyn Runtime,
     rounds: usize,
 ) -> Result<(String, Option<f64>, String)> {
-    let mut sides = [open(&GraphExecutor, bytes, options), open(onnx_runtime, bytes, options)];
+    let mut sides = [open(&Builtin, bytes, options), open(onnx_runtime, bytes, options)];
     let infos = sides.iter().find_map(|side| side.session.as_ref()).map_or(&[][..], Session::inputs).to_vec();
     let owned: Vec<Owned> = infos.iter().map(Owned::random).collect();
     let inputs = owned.iter().map(Owned::view).collect::<Result<Vec<_>>>()?;

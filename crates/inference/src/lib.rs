@@ -31,7 +31,6 @@
 //! ```
 
 mod builtin;
-mod executor;
 mod measured;
 mod onnx_header;
 mod onnx_runtime;
@@ -45,8 +44,7 @@ mod threads;
 pub mod recording;
 pub mod timing;
 
-pub use builtin::{Builtin, Rten};
-pub use executor::GraphExecutor;
+pub use builtin::Builtin;
 pub use onnx_header::declared_tensors;
 pub use onnx_runtime::{OnnxRuntime, prefer_python};
 pub use runtime::{Engine, Runtime, SessionOptions, Sink};

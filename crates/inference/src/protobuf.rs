@@ -1,4 +1,4 @@
-//! Reading of protocol buffer fields in place, and writing of some.
+//! Reading of protocol buffer fields in place.
 
 use opendr_engine::{Error, Result};
 
@@ -6,8 +6,6 @@ use opendr_engine::{Error, Result};
 pub(crate) struct Field<'a> {
     pub(crate) number: u64,
     pub(crate) value: Value<'a>,
-    /// The field with its key, as encoded in the message.
-    pub(crate) raw: &'a [u8],
 }
 
 /// Value of a field, by wire type.
@@ -32,7 +30,6 @@ impl<'a> Fields<'a> {
     }
 
     fn field(&mut self) -> Option<Field<'a>> {
-        let start = self.rest;
         let key = self.varint()?;
         let value = match key & 7 {
             0 => Value::Varint(self.varint()?),
@@ -44,8 +41,7 @@ impl<'a> Fields<'a> {
             5 => self.take(4).map(|_| Value::Fixed)?,
             _ => return None,
         };
-        let raw = &start[..start.len() - self.rest.len()];
-        Some(Field { number: key >> 3, value, raw })
+        Some(Field { number: key >> 3, value })
     }
 
     fn take(&mut self, count: usize) -> Option<&'a [u8]> {
@@ -86,22 +82,6 @@ impl<'a> Iterator for Fields<'a> {
     }
 }
 
-/// Writes an integer.
-pub(crate) fn put_varint(out: &mut Vec<u8>, mut value: u64) {
-    while value >= 0x80 {
-        out.push(value as u8 | 0x80);
-        value >>= 7;
-    }
-    out.push(value as u8);
-}
-
-/// Writes a field with bytes, text or a message.
-pub(crate) fn put_bytes(out: &mut Vec<u8>, number: u64, bytes: &[u8]) {
-    put_varint(out, number << 3 | 2);
-    put_varint(out, bytes.len() as u64);
-    out.extend_from_slice(bytes);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -110,9 +90,9 @@ mod tests {
     fn reads_each_wire_type_and_stops_at_the_first_broken_field() {
         let bytes = [0x08, 0x96, 0x01, 0x12, 2, b'h', b'i', 0x1d, 1, 2, 3, 4, 0x22, 9, b'x'];
         let fields: Vec<_> = Fields::new(&bytes).collect();
-        assert!(matches!(fields[0], Ok(Field { number: 1, value: Value::Varint(150), .. })));
-        assert!(matches!(fields[1], Ok(Field { number: 2, value: Value::Bytes(b"hi"), .. })));
-        assert!(matches!(fields[2], Ok(Field { number: 3, value: Value::Fixed, .. })));
+        assert!(matches!(fields[0], Ok(Field { number: 1, value: Value::Varint(150) })));
+        assert!(matches!(fields[1], Ok(Field { number: 2, value: Value::Bytes(b"hi") })));
+        assert!(matches!(fields[2], Ok(Field { number: 3, value: Value::Fixed })));
         assert!(fields[3].is_err());
         assert_eq!(fields.len(), 4);
         assert!(

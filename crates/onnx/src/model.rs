@@ -38,7 +38,7 @@ pub fn model_from_bytes(bytes: &[u8]) -> Result<ModelProto> {
 }
 
 /// Encodes a model file. Lists in attributes are written unpacked, as in ONNX's schema: re-encoding a file makes it
-/// readable for readers that reject packed lists, such as the built-in runtime.
+/// readable for readers that reject packed lists.
 pub fn bytes_from_model(model: &ModelProto) -> Vec<u8> {
     model.encode_to_vec()
 }

@@ -9,10 +9,11 @@ use opendr_onnx::proto::NodeProto;
 use super::fusion::{self, Fused};
 use super::inputs::{optional, required};
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::graph::Packed;
 use crate::io::{Io, Kernel};
 use crate::planner::{Id, Layout, Planner};
-use crate::tensor::{Constant, Kind, count};
+use crate::tensor::{Kind, count};
 
 /// Channels of a planar input up to which it is read as it is.
 const PLANAR: usize = 4;
@@ -75,9 +76,7 @@ pub(crate) fn output_shape(window: &Window, batch: usize, channels: usize, rank:
 pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
     let dims = planner.shape(x);
-    let weights = planner
-        .constant(required(node, inputs, 1)?)
-        .ok_or_else(|| node.refused("weights that are not constant"))?;
+    let weights = planner.known(node, required(node, inputs, 1)?)?;
     let bias = constant_bias(planner, node, inputs, 2)?;
     if planner.kind(x) != Kind::F32 || !(3..=4).contains(&dims.len()) {
         return Err(node.refused(&format!(
@@ -104,10 +103,9 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
     let shape = output_shape(&window, dims[0], outputs, rank);
     count(&shape)?;
     let bias = bias.as_ref().and_then(|bias| bias.floats());
-    let index = planner.node;
     if channels == 1 && groups == outputs && groups > 1 {
         let x = planner.channels_last(x)?;
-        let filters = planner.graph.packed((index, 0), || {
+        let filters = planner.packed(0, || {
             Packed::Depthwise(Arc::new(DepthwiseFilters::new(floats, outputs, window.kernel, bias)))
         });
         let Packed::Depthwise(filters) = filters else { return Err(node.refused("weights of two kinds")) };
@@ -128,7 +126,7 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
     let planar = groups == 1 && dims[1] <= PLANAR && !planner.is_channels_last(x) && window.kernel != [1, 1];
     let x = if planar { planner.plain(x)? } else { planner.channels_last(x)? };
     let compute = planner.compute.clone();
-    let filters = planner.graph.packed((index, 1 + u8::from(planar)), || {
+    let filters = planner.packed(1 + u8::from(planar), || {
         let sizes = [groups, outputs / groups, channels];
         Packed::Dense(Arc::new(Filters::new(&compute, floats, sizes, window.kernel, bias, planar)))
     });
@@ -169,8 +167,11 @@ pub(super) fn constant_bias(
     slot: usize,
 ) -> Result<Option<Arc<Constant>>> {
     let Some(id) = optional(inputs, slot) else { return Ok(None) };
-    let bias = planner.constant(id).filter(|bias| bias.floats().is_some());
-    bias.map(Some).ok_or_else(|| node.refused("a bias that is not a constant of floats"))
+    let bias = planner.known(node, id)?;
+    if bias.floats().is_none() {
+        return Err(node.refused("a bias that is not of floats"));
+    }
+    Ok(Some(bias))
 }
 
 pub(super) fn finish(fused: &Fused, padded: impl Fn(&[f32]) -> Vec<f32>) -> Finish {

@@ -14,10 +14,11 @@ use super::conv::{ConvStep, constant_bias, finish};
 use super::fusion;
 use super::inputs::required;
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::graph::Packed;
 use crate::io::{Io, Kernel};
 use crate::planner::{Id, Layout, Planner};
-use crate::tensor::{Constant, Kind, count};
+use crate::tensor::{Kind, count};
 
 /// Outputs of a group below which the phases would leave most of a register empty.
 const MIN_OUTPUTS: usize = 8;
@@ -58,9 +59,7 @@ struct Phase {
 pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
     let dims = planner.shape(x);
-    let weights = planner
-        .constant(required(node, inputs, 1)?)
-        .ok_or_else(|| node.refused("weights that are not constant"))?;
+    let weights = planner.known(node, required(node, inputs, 1)?)?;
     let bias = constant_bias(planner, node, inputs, 2)?;
     let floats = weights.floats().ok_or_else(|| node.refused("weights that are not floats"))?;
     if planner.kind(x) != Kind::F32 {
@@ -211,14 +210,14 @@ fn by_phases(
     };
     let x = planner.channels_last(x)?;
     let fused = fusion::after(planner, node, &shape, true);
-    let (compute, index) = (planner.compute.clone(), planner.node);
+    let compute = planner.compute.clone();
     let mut phases = Vec::new();
     for (i, row) in rows.iter().enumerate() {
         for (j, column) in columns.iter().enumerate() {
             let kernel = [row.taps.len(), column.taps.len()];
             // At most `MAX_PHASES`.
             let slot = (i * columns.len() + j) as u8;
-            let filters = planner.graph.packed((index, slot), || {
+            let filters = planner.packed(slot, || {
                 let weights = sub_kernel(geometry, floats, row, column);
                 let sizes = [groups, outputs, inputs];
                 Packed::Dense(Arc::new(Filters::new(&compute, &weights, sizes, kernel, bias, false)))
@@ -317,7 +316,7 @@ fn by_products(
     }
     let x = planner.channels_last(x)?;
     let compute = planner.compute.clone();
-    let filters = planner.graph.packed((planner.node, u8::MAX), || {
+    let filters = planner.packed(u8::MAX, || {
         // From [input, output, tap] to [group, tap, output, input].
         let mut packed = vec![0.0; floats.len()];
         for channel in 0..groups * inputs {

@@ -7,9 +7,11 @@ use opendr_onnx::proto::NodeProto;
 use super::functions;
 use super::inputs::{optional, required};
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::io::{Io, Kernel};
-use crate::planner::{Id, Layout, Planner, channels_to_end};
-use crate::tensor::{Constant, Kind, count};
+use crate::planner::{Id, Layout, Planner};
+use crate::tensor::{Kind, count};
+use crate::value::channels_to_end;
 
 /// Returns the function of a node of one input.
 pub(crate) fn unary_of(node: &NodeProto) -> Option<Unary> {
@@ -73,9 +75,18 @@ pub(crate) fn clip_of(planner: &Planner<'_>, node: &NodeProto, inputs: &[Option<
 
 pub(crate) fn clip(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
-    let function = clip_of(planner, node, inputs)
-        .ok_or_else(|| node.refused("bounds that are not constants of floats"))?;
-    Ok(vec![apply(planner, node, x, function)?])
+    if planner.kind(x) == Kind::F32
+        && let Some(function) = clip_of(planner, node, inputs)
+    {
+        return Ok(vec![apply(planner, node, x, function)?]);
+    }
+    let mut y = x;
+    for (slot, function) in [(1, Function::Max), (2, Function::Min)] {
+        if let Some(bound) = optional(inputs, slot) {
+            y = combine(planner, node, function, y, bound)?;
+        }
+    }
+    Ok(vec![y])
 }
 
 pub(crate) fn variadic(
@@ -499,6 +510,19 @@ pub(crate) fn cast(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
     let x = required(node, inputs, 0)?;
     let to = i32::try_from(node.int_or("to", 0)).map_err(|_| node.damaged("attribute \"to\""))?;
     let to = Kind::from_onnx(to, &node.name)?;
+    if to == Kind::F16 {
+        return Err(node.refused("16-bit floats"));
+    }
+    Ok(vec![converted(planner, x, to)?])
+}
+
+pub(crate) fn cast_like(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
+    let (x, like) = (required(node, inputs, 0)?, required(node, inputs, 1)?);
+    let to = planner.kind(like);
     if to == Kind::F16 {
         return Err(node.refused("16-bit floats"));
     }

@@ -120,14 +120,65 @@ impl Kernel for TriangleStep {
     }
 }
 
+pub(crate) fn eye_like(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    inputs: &[Option<Id>],
+) -> Result<Vec<Id>> {
+    let x = required(node, inputs, 0)?;
+    let &[rows, columns] = planner.shape(x).as_slice() else { return Err(node.damaged("a matrix")) };
+    let kind = match node.find("dtype") {
+        Some(kind) => Kind::from_onnx(i32::try_from(kind.i).unwrap_or(-1), &node.name)?,
+        None => planner.kind(x),
+    };
+    if kind == Kind::F16 {
+        return Err(node.refused("16-bit floats"));
+    }
+    let step = EyeStep { kind, columns, diagonal: node.int_or("k", 0) };
+    let eye = planner.emit_one(step, &[], kind, vec![rows, columns], Layout::Plain)?;
+    Ok(vec![eye])
+}
+
+struct EyeStep {
+    kind: Kind,
+    columns: usize,
+    diagonal: i64,
+}
+
+impl Kernel for EyeStep {
+    fn run(&self, io: &mut Io<'_>) -> Result<()> {
+        match self.kind {
+            Kind::F32 => self.write(io.write(), 1.0_f32),
+            Kind::I64 => self.write(io.write(), 1_i64),
+            Kind::I32 => self.write(io.write(), 1_i32),
+            _ => self.write(io.write(), 1_u8),
+        }
+        Ok(())
+    }
+}
+
+impl EyeStep {
+    fn write<T: Number>(&self, y: &mut [T], one: T) {
+        y.fill(T::default());
+        for (row, y) in y.chunks_mut(self.columns.max(1)).enumerate() {
+            let column = usize::try_from((row as i64).saturating_add(self.diagonal)).ok();
+            if let Some(y) = column.and_then(|column| y.get_mut(column)) {
+                *y = one;
+            }
+        }
+    }
+}
+
 pub(crate) fn one_hot(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let [at, depth, values] = [0, 1, 2].map(|slot| required(node, inputs, slot));
     let (at, values) = (planner.plain(at?)?, planner.plain(values?)?);
     let depth = depth?;
-    let depth = match planner.scalar(depth) {
-        Some(depth) => depth as i64,
-        None => planner.ints(node, depth)?.first().copied().unwrap_or(-1),
+    let depth = planner.known(node, depth)?;
+    let depth = match depth.floats() {
+        Some(depth) => depth.first().map(|&depth| depth as i64),
+        None => depth.ints().and_then(|depth| depth.first().copied()),
     };
+    let depth = depth.unwrap_or(-1);
     let depth = usize::try_from(depth).ok().filter(|_| (1..=MAX_DEPTH).contains(&depth));
     let depth = depth.ok_or_else(|| node.damaged("its depth"))?;
     let (dims, at_kind, kind) = (planner.shape(at), planner.kind(at), planner.kind(values));

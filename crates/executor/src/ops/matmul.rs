@@ -1,4 +1,4 @@
-//! Matrix products.
+//! Products of matrices and stacks of them.
 
 use std::sync::Arc;
 
@@ -6,53 +6,73 @@ use opendr_engine::Result;
 use opendr_kernels::{Convolution, Filters, Finish, Matrix, MatrixMut, Product, Strides, Window};
 use opendr_onnx::proto::NodeProto;
 
-use super::elementwise::{Function, combine};
-use super::inputs::{optional, required};
+use super::inputs::required;
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::graph::Packed;
 use crate::io::{Io, Kernel};
 use crate::planner::{Id, Layout, Planner};
-use crate::tensor::{Constant, Kind, count};
+use crate::tensor::{Kind, count};
 
 pub(crate) fn matmul(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let (a, b) = (required(node, inputs, 0)?, required(node, inputs, 1)?);
+    Ok(vec![multiply(planner, node, [a, b], 0)?])
+}
+
+/// Multiplies matrices, or stacks of them that broadcast. `product` counts the products of the node.
+pub(super) fn multiply(
+    planner: &mut Planner<'_>,
+    node: &NodeProto,
+    [a, b]: [Id; 2],
+    product: u8,
+) -> Result<Id> {
     let (a, b) = (planner.plain(a)?, planner.plain(b)?);
     if planner.kind(a) != Kind::F32 || planner.kind(b) != Kind::F32 {
         return Err(node.refused("elements that are not floats"));
     }
-    let (mut left, mut right) = (planner.shape(a), planner.shape(b));
-    if left.is_empty() || right.is_empty() {
-        return Err(node.damaged("a product of scalars"));
+    let Shapes { sizes, left, right, shape } = Shapes::of(node, &planner.shape(a), &planner.shape(b))?;
+    let [rows, depth, columns] = sizes;
+    if let Some(constant) = planner.constant(b).filter(|b| b.shape.len() == 2 && depth > 0 && columns > 0) {
+        let all_rows = count(&planner.shape(a))? / depth;
+        let weights = Weights { constant: &constant, is_transposed: false, bias: None, product };
+        return with_weights(planner, node, a, &weights, [all_rows, depth, columns], shape);
     }
-    let (vector_left, vector_right) = (left.len() == 1, right.len() == 1);
-    if vector_left {
-        left.insert(0, 1);
-    }
-    if vector_right {
-        right.push(1);
-    }
-    let (rows, depth, columns) = (left[left.len() - 2], left[left.len() - 1], right[right.len() - 1]);
-    if right[right.len() - 2] != depth {
-        return Err(node.damaged(&format!("shapes {left:?} and {right:?}")));
-    }
-    let outer_left = left[..left.len() - 2].to_vec();
-    let outer_right = right[..right.len() - 2].to_vec();
-    let outer = super::elementwise::broadcast_shape(node, &[outer_left.clone(), outer_right.clone()])?;
-    let mut shape = outer.clone();
-    if !vector_left {
-        shape.push(rows);
-    }
-    if !vector_right {
-        shape.push(columns);
-    }
-    count(&shape)?;
-    if let Some(constant) = planner.constant(b).filter(|_| right.len() == 2 && depth > 0 && columns > 0) {
-        let all_rows = count(&outer_left)? * rows;
-        let y = with_weights(planner, node, a, &constant, [all_rows, depth, columns], false, None, shape)?;
-        return Ok(vec![y]);
-    }
-    let batch = count(&outer)?;
-    let offsets = |own: &[usize], size: usize| -> Vec<usize> {
+    let (left, right) = (left.offsets(rows * depth), right.offsets(depth * columns));
+    batched(planner, [a, b], sizes, [left, right], shape)
+}
+
+/// Emits products of matrices that begin at these elements of the two values.
+pub(super) fn batched(
+    planner: &mut Planner<'_>,
+    [a, b]: [Id; 2],
+    sizes: [usize; 3],
+    [left, right]: [Vec<usize>; 2],
+    shape: Vec<usize>,
+) -> Result<Id> {
+    let step = ProductStep { sizes, left, right };
+    planner.emit_one(step, &[a, b], Kind::F32, shape, Layout::Plain)
+}
+
+/// The shapes of a product of stacks of matrices.
+pub(super) struct Shapes {
+    /// Rows, depth and columns.
+    pub(super) sizes: [usize; 3],
+    pub(super) left: Stack,
+    pub(super) right: Stack,
+    /// The shape of the product.
+    pub(super) shape: Vec<usize>,
+}
+
+/// A stack of matrices within the stack of the product.
+pub(super) struct Stack {
+    own: Vec<usize>,
+    outer: Vec<usize>,
+}
+
+impl Stack {
+    /// Returns where the matrix of each product begins, in units of `size`.
+    pub(super) fn offsets(&self, size: usize) -> Vec<usize> {
+        let Self { own, outer } = self;
         let strides = crate::remap::strides(own);
         let missing = outer.len() - own.len();
         let offset = |mut index: usize| {
@@ -65,33 +85,70 @@ pub(crate) fn matmul(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
             }
             at * size
         };
-        (0..batch).map(offset).collect()
-    };
-    let step = ProductStep {
-        sizes: [rows, depth, columns],
-        left: offsets(&outer_left, rows * depth),
-        right: offsets(&outer_right, depth * columns),
-    };
-    Ok(vec![planner.emit_one(step, &[a, b], Kind::F32, shape, Layout::Plain)?])
+        (0..outer.iter().product()).map(offset).collect()
+    }
+}
+
+impl Shapes {
+    pub(super) fn of(node: &NodeProto, left: &[usize], right: &[usize]) -> Result<Self> {
+        let (mut left, mut right) = (left.to_vec(), right.to_vec());
+        if left.is_empty() || right.is_empty() {
+            return Err(node.damaged("a product of scalars"));
+        }
+        let (vector_left, vector_right) = (left.len() == 1, right.len() == 1);
+        if vector_left {
+            left.insert(0, 1);
+        }
+        if vector_right {
+            right.push(1);
+        }
+        let (rows, depth, columns) = (left[left.len() - 2], left[left.len() - 1], right[right.len() - 1]);
+        if right[right.len() - 2] != depth {
+            return Err(node.damaged(&format!("shapes {left:?} and {right:?}")));
+        }
+        let outer_left = left[..left.len() - 2].to_vec();
+        let outer_right = right[..right.len() - 2].to_vec();
+        let outer = super::elementwise::broadcast_shape(node, &[outer_left.clone(), outer_right.clone()])?;
+        let mut shape = outer.clone();
+        if !vector_left {
+            shape.push(rows);
+        }
+        if !vector_right {
+            shape.push(columns);
+        }
+        count(&shape)?;
+        Ok(Self {
+            sizes: [rows, depth, columns],
+            left: Stack { own: outer_left, outer: outer.clone() },
+            right: Stack { own: outer_right, outer },
+            shape,
+        })
+    }
+}
+
+/// Constant weights of a product.
+pub(super) struct Weights<'a> {
+    pub(super) constant: &'a Constant,
+    pub(super) is_transposed: bool,
+    pub(super) bias: Option<&'a [f32]>,
+    /// Number of the product within its node.
+    pub(super) product: u8,
 }
 
 /// Multiplies rows by constant weights, which are packed once.
-#[expect(clippy::too_many_arguments, reason = "sizes and names of one product")]
-fn with_weights(
+pub(super) fn with_weights(
     planner: &mut Planner<'_>,
     node: &NodeProto,
     a: Id,
-    weights: &Constant,
+    weights: &Weights<'_>,
     [rows, depth, columns]: [usize; 3],
-    transposed: bool,
-    bias: Option<&[f32]>,
     shape: Vec<usize>,
 ) -> Result<Id> {
-    let floats = weights.floats().ok_or_else(|| node.refused("weights that are not floats"))?;
+    let &Weights { constant, is_transposed, bias, product } = weights;
+    let floats = constant.floats().ok_or_else(|| node.refused("weights that are not floats"))?;
     let compute = planner.compute.clone();
-    let index = planner.node;
-    let filters = planner.graph.packed((index, 3), || {
-        Packed::Dense(Arc::new(Filters::from_matrix(&compute, floats, [depth, columns], transposed, bias)))
+    let filters = planner.packed(product, || {
+        Packed::Dense(Arc::new(Filters::from_matrix(&compute, floats, [depth, columns], is_transposed, bias)))
     });
     let Packed::Dense(filters) = filters else { return Err(node.refused("weights of two kinds")) };
     let input = [1, rows];
@@ -129,34 +186,5 @@ impl Kernel for ProductStep {
             Product::new().run(io.compute, a, b, MatrixMut::new(y, rows, columns));
         }
         Ok(())
-    }
-}
-
-pub(crate) fn gemm(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
-    let (a, b) = (required(node, inputs, 0)?, required(node, inputs, 1)?);
-    let a = planner.plain(a)?;
-    let constant = planner.constant(b).ok_or_else(|| node.refused("a second factor that is not constant"))?;
-    let (alpha, beta) = (node.float("alpha", 1.0), node.float("beta", 1.0));
-    if alpha != 1.0 || node.int_or("transA", 0) != 0 || planner.kind(a) != Kind::F32 {
-        return Err(node.refused("its factor, or a transposed first matrix"));
-    }
-    let transposed = node.int_or("transB", 0) != 0;
-    let (&[rows, depth], &[first, second]) = (planner.shape(a).as_slice(), constant.shape.as_slice()) else {
-        return Err(node.damaged("matrices have two dimensions"));
-    };
-    let (inner, columns) = if transposed { (second, first) } else { (first, second) };
-    if inner != depth || depth == 0 || columns == 0 {
-        return Err(node.damaged(&format!("shapes {:?} and {:?}", [rows, depth], constant.shape)));
-    }
-    let shape = vec![rows, columns];
-    let c = optional(inputs, 2).filter(|_| beta != 0.0);
-    let bias =
-        c.and_then(|c| planner.constant(c)).filter(|bias| beta == 1.0 && bias.shape.last() == Some(&columns));
-    let bias = bias.as_ref().and_then(|bias| bias.floats()).filter(|bias| bias.len() == columns);
-    let y = with_weights(planner, node, a, &constant, [rows, depth, columns], transposed, bias, shape)?;
-    match c.filter(|_| bias.is_none()) {
-        Some(_) if beta != 1.0 => Err(node.refused("attribute \"beta\"")),
-        Some(c) => Ok(vec![combine(planner, node, Function::Add, y, c)?]),
-        None => Ok(vec![y]),
     }
 }

@@ -1,35 +1,68 @@
 //! The operators: each builds the steps of a node whose input shapes are known.
 
+mod attention;
 mod bytes;
 mod conv;
+mod conv_integer;
 mod conv_transpose;
+mod dynamic_quantize;
+mod einsum;
 mod elementwise;
 mod functions;
 mod fusion;
+mod gemm;
 mod grid_sample;
 mod groups;
 mod index;
 mod inputs;
 mod lines;
 mod matmul;
+mod matmul_integer;
 mod movement;
+mod non_zero;
 mod normalise;
 mod pool;
 mod quantize;
 mod recurrent;
 mod reduce;
 mod resize;
+mod reverse_sequence;
+mod rotary;
+mod scatter;
 mod shape;
+mod suppression;
+mod top_k;
 
 use opendr_engine::Result;
 use opendr_onnx::proto::NodeProto;
 
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::planner::{Id, Planner};
 
-type Build = fn(&mut Planner<'_>, &NodeProto, &[Option<Id>]) -> Result<Vec<Id>>;
+pub(crate) type Build = fn(&mut Planner<'_>, &NodeProto, &[Option<Id>]) -> Result<Vec<Id>>;
 
-/// Operators and what builds them, by name.
+/// Computes the outputs of a node from its inputs.
+pub(crate) type Host = fn(&NodeProto, &[Option<&Constant>]) -> Result<Vec<Constant>>;
+
+/// How an operator runs.
+pub(crate) enum Operator {
+    /// As steps of a plan.
+    Steps(Build),
+    /// On tensors: the shapes of its outputs depend on their elements.
+    Host(Host),
+    If,
+    Loop,
+}
+
+/// Operators that run on tensors, by name.
+const HOSTS: &[(&str, Host)] =
+    &[("NonMaxSuppression", suppression::non_max_suppression), ("NonZero", non_zero::non_zero)];
+
+/// Operators with graphs.
+const CONTROL: &[&str] = &["If", "Loop"];
+
+/// Operators and what builds their steps, by name.
 const OPERATORS: &[(&str, Build)] = &[
     ("Abs", elementwise::unary),
     ("Acos", functions::build),
@@ -42,9 +75,11 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Asinh", functions::build),
     ("Atan", functions::build),
     ("Atanh", functions::build),
+    ("Attention", attention::build),
     ("AveragePool", pool::pool),
     ("BatchNormalization", normalise::batch),
     ("Cast", elementwise::cast),
+    ("CastLike", elementwise::cast_like),
     ("Ceil", functions::build),
     ("Celu", functions::build),
     ("Clip", elementwise::clip),
@@ -52,6 +87,7 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Constant", shape::constant),
     ("ConstantOfShape", shape::constant_of_shape),
     ("Conv", conv::conv),
+    ("ConvInteger", conv_integer::build),
     ("ConvTranspose", conv_transpose::build),
     ("Cos", functions::build),
     ("Cosh", functions::build),
@@ -60,11 +96,14 @@ const OPERATORS: &[(&str, Build)] = &[
     ("DequantizeLinear", quantize::dequantize),
     ("Div", elementwise::binary),
     ("Dropout", shape::identity),
+    ("DynamicQuantizeLinear", dynamic_quantize::build),
+    ("Einsum", einsum::build),
     ("Elu", functions::build),
     ("Equal", elementwise::binary),
     ("Erf", elementwise::unary),
     ("Exp", elementwise::unary),
     ("Expand", movement::expand),
+    ("EyeLike", lines::eye_like),
     ("Flatten", shape::flatten),
     ("Floor", functions::build),
     ("GRU", recurrent::gru),
@@ -72,7 +111,7 @@ const OPERATORS: &[(&str, Build)] = &[
     ("GatherElements", index::gather_elements),
     ("GatherND", index::gather_nd),
     ("Gelu", elementwise::unary),
-    ("Gemm", matmul::gemm),
+    ("Gemm", gemm::build),
     ("GlobalAveragePool", pool::global),
     ("GlobalMaxPool", pool::global),
     ("Greater", elementwise::binary),
@@ -94,6 +133,7 @@ const OPERATORS: &[(&str, Build)] = &[
     ("LogSoftmax", normalise::softmax),
     ("LpNormalization", groups::lp),
     ("MatMul", matmul::matmul),
+    ("MatMulInteger", matmul_integer::build),
     ("Max", elementwise::variadic),
     ("MaxPool", pool::pool),
     ("Mean", elementwise::variadic),
@@ -125,9 +165,12 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Relu", elementwise::unary),
     ("Reshape", shape::reshape),
     ("Resize", resize::resize),
+    ("ReverseSequence", reverse_sequence::build),
+    ("RotaryEmbedding", rotary::build),
     ("Round", functions::build),
-    ("ScatterElements", index::scatter_elements),
-    ("ScatterND", index::scatter_nd),
+    ("Scatter", scatter::elements),
+    ("ScatterElements", scatter::elements),
+    ("ScatterND", scatter::nd),
     ("Selu", functions::build),
     ("Shape", shape::shape),
     ("Shrink", functions::build),
@@ -151,21 +194,41 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Tanh", elementwise::unary),
     ("ThresholdedRelu", functions::build),
     ("Tile", movement::tile),
-    ("TopK", index::top_k),
+    ("TopK", top_k::top_k),
     ("Transpose", movement::transpose),
     ("Trilu", lines::triangle),
     ("Unsqueeze", shape::unsqueeze),
+    ("Upsample", resize::resize),
     ("Where", elementwise::select),
     ("Xor", elementwise::binary),
 ];
 
-/// Returns the names of the operators that the executor runs.
+/// Returns the names of the operators that the executor runs, in alphabetical order.
 pub fn supported_operators() -> impl Iterator<Item = &'static str> {
-    OPERATORS.iter().map(|(name, _)| *name)
+    let hosts = HOSTS.iter().map(|(name, _)| *name);
+    let mut names: Vec<&str> = OPERATORS.iter().map(|(name, _)| *name).chain(hosts).collect();
+    names.extend(CONTROL);
+    names.sort_unstable();
+    names.into_iter()
+}
+
+/// Returns how an operator runs; `None` where the executor lacks it.
+pub(crate) fn operator(name: &str) -> Option<Operator> {
+    if let Some((_, build)) = OPERATORS.iter().find(|(operator, _)| *operator == name) {
+        return Some(Operator::Steps(*build));
+    }
+    if let Some((_, host)) = HOSTS.iter().find(|(operator, _)| *operator == name) {
+        return Some(Operator::Host(*host));
+    }
+    match name {
+        "If" => Some(Operator::If),
+        "Loop" => Some(Operator::Loop),
+        _ => None,
+    }
 }
 
 pub(crate) fn is_supported(name: &str) -> bool {
-    OPERATORS.iter().any(|(operator, _)| *operator == name)
+    operator(name).is_some()
 }
 
 /// Builds the steps of a node of quantised values, which computes with their bytes; `None` where it does not.
@@ -187,8 +250,9 @@ pub(crate) fn build_on_bytes(planner: &mut Planner<'_>, node: &NodeProto) -> Res
 
 /// Builds the steps of a node and returns its outputs.
 pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
-    let build = OPERATORS.iter().find(|(name, _)| *name == node.op_type).map(|(_, build)| build);
-    let build = build.ok_or_else(|| node.refused("it is not known"))?;
+    let Some(Operator::Steps(build)) = operator(&node.op_type) else {
+        return Err(node.refused("it is not known"));
+    };
     let used = node.output.iter().rposition(|name| !name.is_empty()).map_or(0, |last| last + 1);
     let outputs = build(planner, node, inputs)?;
     if outputs.len() < used {

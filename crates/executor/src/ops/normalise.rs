@@ -7,9 +7,10 @@ use opendr_onnx::proto::NodeProto;
 use super::elementwise::{Function, combine};
 use super::inputs::{axis, optional, required};
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::io::{Io, Kernel};
 use crate::planner::{Id, Layout, Planner};
-use crate::tensor::{Constant, Kind};
+use crate::tensor::Kind;
 
 pub(crate) fn softmax(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let x = required(node, inputs, 0)?;
@@ -94,10 +95,10 @@ pub(crate) fn batch(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
     }
     let mut parameters = Vec::new();
     for slot in 1..5 {
-        let constant =
-            planner.constant(required(node, inputs, slot)?).filter(|constant| constant.shape == [dims[1]]);
-        let constant =
-            constant.ok_or_else(|| node.refused("parameters that are not one constant per channel"))?;
+        let constant = planner.known(node, required(node, inputs, slot)?)?;
+        if constant.shape != [dims[1]] {
+            return Err(node.damaged("parameters that are not one per channel"));
+        }
         parameters
             .push(constant.floats().ok_or_else(|| node.refused("parameters that are not floats"))?.to_vec());
     }

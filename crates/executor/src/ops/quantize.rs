@@ -38,7 +38,7 @@ fn parameters(
     }
     let value = planner.value(x).clone();
     let physical = value.physical();
-    let shape = if planner.is_channels_last(x) { crate::planner::channels_to_end(&shape) } else { shape };
+    let shape = if planner.is_channels_last(x) { crate::value::channels_to_end(&shape) } else { shape };
     let own = physical.clone();
     let rows = Rows::new(&physical, &[own, shape.clone(), shape]);
     let scale = planner.plain(scale)?;
@@ -86,6 +86,15 @@ pub(crate) fn quantize(
     let (reads, rows) = parameters(planner, node, inputs, x)?;
     let value = planner.value(x).clone();
     planner.emit(QuantizeStep { to, rows }, &reads, &[(to, value.shape, value.layout)])
+}
+
+/// Quantises to unsigned bytes with a scale and a zero point that a run computes.
+pub(super) fn with_scale(planner: &mut Planner<'_>, x: Id, [scale, zero]: [Id; 2]) -> Result<Id> {
+    let value = planner.value(x).clone();
+    let physical = value.physical();
+    let rows = Rows::new(&physical, &[physical.clone(), Vec::new(), Vec::new()]);
+    let step = QuantizeStep { to: Kind::U8, rows };
+    planner.emit_one(step, &[x, scale, zero], Kind::U8, value.shape, value.layout)
 }
 
 struct QuantizeStep {

@@ -44,10 +44,11 @@ fn build(
         _ => vec![false, true],
     };
     let weights = |slot: usize| {
-        let constant = planner.constant(required(node, inputs, slot)?);
-        constant
-            .filter(|constant| constant.floats().is_some())
-            .ok_or_else(|| node.refused("weights that are not constants of floats"))
+        let constant = planner.known(node, required(node, inputs, slot)?)?;
+        if constant.floats().is_none() {
+            return Err(node.refused("weights that are not floats"));
+        }
+        Ok(constant)
     };
     let (w, r) = (weights(1)?, weights(2)?);
     let b = if optional(inputs, 3).is_some() { Some(weights(3)?) } else { None };

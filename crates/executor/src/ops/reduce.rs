@@ -94,6 +94,13 @@ pub(crate) fn reduce(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     Ok(vec![planner.emit_one(step, &[x], kind, shape, Layout::Plain)?])
 }
 
+/// Sums runs of `length` elements, of floats or integers.
+pub(super) fn sum_runs(planner: &mut Planner<'_>, x: Id, length: usize, shape: Vec<usize>) -> Result<Id> {
+    let kind = planner.kind(x);
+    let step = ReduceStep { reduction: Reduction::Sum, kind, length, inner: 1 };
+    planner.emit_one(step, &[x], kind, shape, Layout::Plain)
+}
+
 struct ReduceStep {
     reduction: Reduction,
     kind: Kind,

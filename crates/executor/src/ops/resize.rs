@@ -30,6 +30,11 @@ pub(crate) fn resize(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     Ok(vec![planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?])
 }
 
+/// Returns whether positions and inputs are those of `Upsample` and of the first `Resize`.
+fn is_old(planner: &Planner<'_>, node: &NodeProto) -> bool {
+    planner.graph.opset < 11 || node.op_type == "Upsample"
+}
+
 /// Shape of the output, and the positions of its rows and columns in the input.
 struct Axes {
     shape: Vec<usize>,
@@ -39,15 +44,21 @@ struct Axes {
 impl Axes {
     fn new(planner: &Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Self> {
         let dims = planner.shape(required(node, inputs, 0)?);
-        let old = planner.graph.opset < 11;
+        let old = is_old(planner, node);
         if dims.len() != 4 || node.find("axes").is_some() || node.int_or("antialias", 0) != 0 {
             return Err(node.refused("its input, axes, or antialiasing"));
         }
         if node.text("keep_aspect_ratio_policy", "stretch") != "stretch" {
             return Err(node.refused("attribute \"keep_aspect_ratio_policy\""));
         }
-        let scales = optional(inputs, if old { 1 } else { 2 }).and_then(|id| planner.constant(id));
-        let scales = scales.as_ref().and_then(|scales| scales.floats()).filter(|scales| !scales.is_empty());
+        let scales = match optional(inputs, if old { 1 } else { 2 }) {
+            Some(id) => Some(planner.known(node, id)?),
+            None => None,
+        };
+        // `Upsample` had its scales as an attribute at first.
+        let attribute = node.find("scales").map(|scales| scales.floats.as_slice());
+        let scales = scales.as_ref().and_then(|scales| scales.floats()).or(attribute);
+        let scales = scales.filter(|scales| !scales.is_empty());
         let (shape, scales): (Vec<usize>, Vec<f64>) = match (scales, optional(inputs, 3)) {
             (Some(scales), _) if scales.len() == 4 => {
                 let sizes = dims.iter().zip(scales).map(|(&dim, &scale)| {
@@ -67,7 +78,7 @@ impl Axes {
                     sizes.iter().zip(&dims).map(|(&size, &dim)| size as f64 / dim.max(1) as f64).collect();
                 (sizes, scales)
             }
-            _ => return Err(node.refused("scales that are not constant")),
+            _ => return Err(node.damaged("neither four scales nor sizes")),
         };
         count(&shape)?;
         if shape[..2] != dims[..2] || dims.contains(&0) {
@@ -111,10 +122,12 @@ impl Geometry {
         let Axes { shape, positions: [rows, columns] } = Axes::new(planner, node, inputs)?;
         let dims = planner.shape(required(node, inputs, 0)?);
         let mode = node.text("mode", "nearest");
+        // The name of two dimensions in the first `Upsample`.
+        let mode = if mode == "bilinear" { "linear".to_owned() } else { mode };
         if mode != "linear" && mode != "nearest" {
             return Err(node.refused(&format!("mode {mode:?}")));
         }
-        let old = planner.graph.opset < 11;
+        let old = is_old(planner, node);
         let rounding = node.text("nearest_mode", if old { "floor" } else { "round_prefer_floor" });
         let points = |positions: &[f64], input: usize| -> Result<Vec<Point>> {
             let last = (input - 1) as f64;

@@ -6,8 +6,9 @@ use opendr_onnx::proto::NodeProto;
 use super::inputs::{axis, list, optional, required};
 use super::movement::sizes;
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::planner::{Id, Layout, Planner};
-use crate::tensor::{Constant, Kind, count};
+use crate::tensor::{Kind, count};
 
 pub(crate) fn identity(
     planner: &mut Planner<'_>,
@@ -99,12 +100,12 @@ pub(crate) fn shape(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
     let clamp = |at: i64| (if at < 0 { at.saturating_add(rank) } else { at }).clamp(0, rank) as usize;
     let (start, end) = (clamp(node.int_or("start", 0)), clamp(node.int_or("end", rank)));
     let values: Vec<i64> = dims[start.min(end)..end].iter().map(|&dim| dim as i64).collect();
-    Ok(vec![planner.add_constant(Constant::from_ints(vec![values.len()], &values))])
+    Ok(vec![planner.add_size(Constant::from_ints(vec![values.len()], &values))])
 }
 
 pub(crate) fn size(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let elements = count(&planner.shape(required(node, inputs, 0)?))?;
-    Ok(vec![planner.add_constant(Constant::from_ints(Vec::new(), &[elements as i64]))])
+    Ok(vec![planner.add_size(Constant::from_ints(Vec::new(), &[elements as i64]))])
 }
 
 pub(crate) fn constant(planner: &mut Planner<'_>, node: &NodeProto, _: &[Option<Id>]) -> Result<Vec<Id>> {
@@ -146,8 +147,9 @@ pub(crate) fn range(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
     let [start, limit, delta] = ids;
     let (start, limit, delta) = (start?, limit?, delta?);
     if planner.kind(start) == Kind::F32 {
-        let number = |id| {
-            planner.scalar(id).ok_or_else(|| node.refused("bounds that depend on the data of the inputs"))
+        let number = |id| match planner.known(node, id)?.floats() {
+            Some(&[number]) => Ok(number),
+            _ => Err(node.damaged("its bounds")),
         };
         let (start, limit, delta) = (number(start)?, number(limit)?, number(delta)?);
         let length = ((f64::from(limit) - f64::from(start)) / f64::from(delta)).ceil().max(0.0);
@@ -175,7 +177,7 @@ pub(crate) fn range(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
     let kind = planner.kind(required(node, inputs, 0)?);
     let constant = if kind == Kind::I32 {
         let values: Vec<i32> = values.iter().map(|&value| value as i32).collect();
-        Constant { kind, shape: vec![values.len()], data: opendr_kernels::Arena::from_numbers(&values) }
+        Constant::of(kind, vec![values.len()], &values)
     } else {
         Constant::from_ints(vec![values.len()], &values)
     };

@@ -2,7 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "tests fail by panicking")]
 
 mod conformance;
+mod control_flow;
 mod conv_transpose;
+mod data_shapes;
+mod einsum;
+mod graphs;
 mod hostile;
+mod integers;
 mod operators;
 mod threads;

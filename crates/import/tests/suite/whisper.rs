@@ -2,14 +2,13 @@
 //! damaged files are rejected.
 
 use opendr_engine::ErrorKind;
+use opendr_executor::{Data, Executor, Tensor};
 use opendr_import::{
     WhisperOnnx, is_exported_whisper, whisper_from_ctranslate2, whisper_from_onnx, whisper_from_safetensors,
 };
+use opendr_kernels::Compute;
 use opendr_onnx::proto::{AttributeProto, DataType, GraphProto, NodeProto, TensorProto};
 use opendr_onnx::{bytes_from_model, model_from_graph};
-use rten::{Model, ValueOrView};
-use rten_tensor::Tensor;
-use rten_tensor::prelude::*;
 
 const WIDTH: usize = 64;
 const BANDS: usize = 2;
@@ -202,45 +201,53 @@ fn tiny_exported(side: &str, prefix: &str, inner: usize) -> Vec<u8> {
     bytes_from_model(&model_from_graph(graph))
 }
 
+/// Runs a network of floats once; returns shapes and elements of its outputs.
+fn run(onnx: &[u8], inputs: &[(&[usize], Data<'_>)]) -> Vec<(Vec<usize>, Vec<f32>)> {
+    let mut executor = Executor::open(onnx, Compute::single()).unwrap();
+    let inputs: Vec<Tensor<'_>> = inputs.iter().map(|&(shape, data)| Tensor { shape, data }).collect();
+    let mut all = Vec::new();
+    let ran = executor.run(&inputs, &mut |outputs| {
+        all.extend(outputs.iter().map(|output| match output.data {
+            Data::F32(data) => (output.shape.to_vec(), data.to_vec()),
+            other => panic!("output of type {:?}", other.kind()),
+        }));
+        Ok(())
+    });
+    ran.unwrap();
+    all
+}
+
 /// Decodes `tokens` in steps of the given sizes; returns the logits after the last.
 fn decoded(networks: &WhisperOnnx, tokens: &[i32], steps: &[usize]) -> Vec<f32> {
-    let encoder = Model::load(networks.encoder.clone()).unwrap();
-    let decoder = Model::load(networks.decoder.clone()).unwrap();
     let mel: Vec<f32> = (0..BANDS * 3000).map(|at| (at as f32 * 0.37).sin()).collect();
-    let mel = Tensor::from_data(&[1, BANDS, 3000], mel);
-    let heard = encoder.run(vec![(encoder.input_ids()[0], mel.view().into())], encoder.output_ids(), None);
-    let heard: Vec<Tensor<f32>> = heard.unwrap().into_iter().map(|value| value.try_into().unwrap()).collect();
-    assert_eq!(
-        (heard[0].shape().to_vec(), heard[1].shape().to_vec()),
-        (vec![1, 64, 1500], vec![1, 1500, 64])
-    );
+    let heard = run(&networks.encoder, &[(&[1, BANDS, 3000], Data::F32(&mel))]);
+    assert_eq!((&*heard[0].0, &*heard[1].0), (&[1, 64, 1500][..], &[1, 1500, 64][..]));
     let (mut keys, mut values) = (vec![0.0; WIDTH], vec![0.0; WIDTH]);
     let (mut logits, mut begin) = (Vec::new(), 0);
-    for count in steps {
+    for &count in steps {
         let rows = keys.len() / WIDTH;
-        let own = Tensor::from_data(&[*count], tokens[begin..begin + count].to_vec());
-        let places = Tensor::from_data(&[*count], (begin as i32..(begin + count) as i32).collect::<Vec<_>>());
+        let places: Vec<i32> = (begin as i32..(begin + count) as i32).collect();
         let mask = (0..count * (rows + count)).map(|at| {
             let (row, column) = (at / (rows + count), at % (rows + count));
             if (1..=rows + row).contains(&column) { 0.0 } else { -1e9 }
         });
-        let mask = Tensor::from_data(&[*count, rows + count], mask.collect::<Vec<f32>>());
-        let past = [&keys, &values].map(|past| Tensor::from_data(&[rows, WIDTH], past.clone()));
-        let inputs: [ValueOrView<'_>; 7] = [
-            own.view().into(),
-            places.view().into(),
-            mask.view().into(),
-            past[0].view().into(),
-            past[1].view().into(),
-            heard[0].view().into(),
-            heard[1].view().into(),
-        ];
-        let inputs = decoder.input_ids().iter().copied().zip(inputs).collect();
-        let outputs = decoder.run(inputs, decoder.output_ids(), None).unwrap();
-        let mut outputs = outputs.into_iter().map(|value| Tensor::<f32>::try_from(value).unwrap());
-        logits = outputs.next().unwrap().to_vec();
-        keys.extend(outputs.next().unwrap().to_vec());
-        values.extend(outputs.next().unwrap().to_vec());
+        let mask: Vec<f32> = mask.collect();
+        let outputs = run(
+            &networks.decoder,
+            &[
+                (&[count], Data::I32(&tokens[begin..begin + count])),
+                (&[count], Data::I32(&places)),
+                (&[count, rows + count], Data::F32(&mask)),
+                (&[rows, WIDTH], Data::F32(&keys)),
+                (&[rows, WIDTH], Data::F32(&values)),
+                (&heard[0].0, Data::F32(&heard[0].1)),
+                (&heard[1].0, Data::F32(&heard[1].1)),
+            ],
+        );
+        let mut outputs = outputs.into_iter().map(|(_, numbers)| numbers);
+        logits = outputs.next().unwrap();
+        keys.extend(outputs.next().unwrap());
+        values.extend(outputs.next().unwrap());
         begin += count;
     }
     logits

@@ -13,7 +13,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &ModuleOperationIr) -> 
         ($op:expr, $kernel:expr, $stride:expr, $padding:expr, $dilation:expr) => {{
             let window = Window { kernel: $kernel, stride: $stride, padding: $padding, dilation: $dilation };
             let mut operator = window.operator("MaxPool", $op.ceil_mode, &$op.x, &$op.out);
-            // rten refuses the attribute.
+            // The default is left out.
             if $dilation.iter().any(|&dilation| dilation != 1) {
                 operator = operator.ints("dilations", ints($dilation));
             }

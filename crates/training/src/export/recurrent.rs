@@ -55,7 +55,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &CustomOpIr) -> Result<
         ElementType::Float,
         dims,
     )?;
-    // The time axis comes first, the only layout of rten.
+    // The time axis comes first, the only layout of the built-in runtime.
     let x = graph.wire(x)?;
     let x = swapped(graph, &x)?;
     let [time, batch, _] = *x.dims() else {

@@ -58,7 +58,7 @@ fn resize(graph: &mut Lowering<'_>, op: &InterpolateOpIr) -> Result<()> {
         InterpolateModeIr::Bilinear => Operator::new("Resize")
             .text("mode", "linear")
             .text("coordinate_transformation_mode", if corners { "align_corners" } else { "half_pixel" }),
-        // rten has no cubic mode, ONNX no Lanczos; both are linear in the image.
+        // Cubic interpolation and Lanczos, which ONNX lacks, are linear in the image.
         mode => {
             let options = InterpolateOptions::new(mode.clone().into()).with_align_corners(corners);
             let resized = |picture, size| interpolate(picture, options.clone().with_output_size(size));

@@ -11,10 +11,11 @@ use opendr_onnx::proto::NodeProto;
 use super::super::conv::{output_shape, window};
 use super::pattern::{Requantised, dequantised, integers, requantised};
 use crate::attributes::Attributes;
+use crate::constant::Constant;
 use crate::graph::Packed;
 use crate::io::{Io, Kernel};
 use crate::planner::{Id, Layout, Planner};
-use crate::tensor::{Constant, Kind, count};
+use crate::tensor::{Kind, count};
 
 /// Maximum difference of the scale of the bias from the product of the other scales, relative to it.
 const BIAS_SCALE: f32 = 1e-4;
@@ -55,7 +56,6 @@ pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto) -> Result<Optio
     let shape = output_shape(&window, dims[0], outputs, rank);
     count(&shape)?;
     let compute = planner.compute.clone();
-    let index = planner.node;
     let make = || {
         let weights = ByteWeights {
             bytes: weights.constant.data.get(weights.constant.region()),
@@ -69,7 +69,7 @@ pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto) -> Result<Optio
         };
         packed(&compute, &weights, x.zero, is_depthwise)
     };
-    let filters = planner.graph.packed((index, 8), make);
+    let filters = planner.packed(8, make);
     let (batch, output) = (dims[0], after.output);
     let x = planner.channels_last(x.bytes)?;
     let y = match filters {

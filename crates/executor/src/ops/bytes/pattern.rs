@@ -4,8 +4,9 @@ use opendr_kernels::{ByteOutput, ByteZero};
 use opendr_onnx::proto::NodeProto;
 
 use super::super::elementwise::clip_of;
+use crate::constant::Constant;
 use crate::planner::{Id, Planner};
-use crate::tensor::{Constant, Kind};
+use crate::tensor::Kind;
 
 /// A dequantised tensor with one scale.
 #[derive(Debug, Clone, Copy)]

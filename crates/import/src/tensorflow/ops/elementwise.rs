@@ -65,12 +65,6 @@ pub fn apply(ctx: &mut Lowering, call: &Call, name: &'static str, x: &Value, y: 
     let comparison =
         matches!(name, "Equal" | "Less" | "LessOrEqual" | "Greater" | "GreaterOrEqual" | "And" | "Or");
     let kind = if comparison { ElementType::Bool } else { wires[0].kind() };
-    // rten 0.27 returns a quotient of the dividend's rank where the divisor has one element.
-    if name == "Div" && kind == ElementType::Float && wires[0].rank() < wires[1].rank() {
-        let divisor = Value::new(wires[1].clone(), order);
-        let inverse = apply_unary(ctx, call, Operator::new("Reciprocal"), &divisor)?;
-        return apply(ctx, call, "Mul", x, &inverse);
-    }
     ctx.emit(call, Operator::new(name), &[&wires[0], &wires[1]], kind, &dims, order)
 }
 

@@ -1,11 +1,10 @@
 //! Small TensorFlow.js models that the tests write, and the runtime that runs the imported ones.
 
 use opendr_engine::Result;
+use opendr_executor::{Data, Executor, Tensor};
 use opendr_import::{ImportOptions, onnx_from_tfjs};
+use opendr_kernels::Compute;
 use opendr_onnx::{model_from_bytes, proto::NodeProto};
-use rten::{Model, Value};
-use rten_tensor::Tensor;
-use rten_tensor::prelude::*;
 use serde_json::{Value as Json, json};
 
 /// A graph model under construction.
@@ -93,11 +92,27 @@ impl Tiny {
 
 /// Runs an imported model on a channels-last image (or another input, unchanged).
 pub fn run(onnx: Vec<u8>, dims: &[usize], values: &[f32]) -> Vec<Array> {
-    let model = Model::load(onnx).unwrap();
-    let x = Tensor::from_data(dims, values.to_vec());
-    let x = if dims.len() == 4 { x.permuted(&[0, 3, 1, 2]).to_tensor() } else { x };
-    let outputs = model.run(vec![(model.input_ids()[0], x.view().into())], model.output_ids(), None).unwrap();
-    outputs.into_iter().map(Array::from_value).collect()
+    let (dims, values) = match *dims {
+        [batch, height, width, channels] => {
+            let at = |image: usize, channel: usize, pixel: usize| {
+                values[(image * height * width + pixel) * channels + channel]
+            };
+            let planes = (0..batch).flat_map(|image| (0..channels).map(move |channel| (image, channel)));
+            let pixels = planes
+                .flat_map(|(image, channel)| (0..height * width).map(move |pixel| at(image, channel, pixel)));
+            (vec![batch, channels, height, width], pixels.collect())
+        }
+        _ => (dims.to_vec(), values.to_vec()),
+    };
+    let mut executor = Executor::open(&onnx, Compute::single()).unwrap();
+    let mut arrays = Vec::new();
+    let input = Tensor { shape: &dims, data: Data::F32(&values) };
+    let ran = executor.run(&[input], &mut |outputs| {
+        arrays.extend(outputs.iter().map(Array::from_tensor));
+        Ok(())
+    });
+    ran.unwrap();
+    arrays
 }
 
 /// A result: shape and elements.
@@ -108,15 +123,14 @@ pub struct Array {
 }
 
 impl Array {
-    fn from_value(value: Value) -> Self {
-        match value {
-            Value::FloatTensor(tensor) => Self { dims: tensor.shape().to_vec(), values: tensor.to_vec() },
-            Value::Int32Tensor(tensor) => Self {
-                dims: tensor.shape().to_vec(),
-                values: tensor.iter().map(|&value| value as f32).collect(),
-            },
-            other => panic!("output of type {:?}", other.dtype()),
-        }
+    fn from_tensor(tensor: &Tensor<'_>) -> Self {
+        let values = match tensor.data {
+            Data::F32(data) => data.to_vec(),
+            Data::I32(data) => data.iter().map(|&value| value as f32).collect(),
+            Data::I64(data) => data.iter().map(|&value| value as f32).collect(),
+            other => panic!("output of type {:?}", other.kind()),
+        };
+        Self { dims: tensor.shape.to_vec(), values }
     }
 
     /// Checks shape and elements, to 1e-5.

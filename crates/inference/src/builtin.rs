@@ -1,8 +1,8 @@
-//! The graph executor as a runtime: models planned and run on our own kernels.
+//! The built-in runtime: the graph executor on our own kernels, available without any installed library.
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-use opendr_engine::{Device, Error, Result};
+use opendr_engine::{Device, Error, ErrorKind, Result};
 use opendr_executor::{Data, Executor, Tensor};
 use opendr_kernels::{Compute, Isa, WorkerPool};
 use smallvec::SmallVec;
@@ -11,13 +11,14 @@ use crate::onnx_header::OnnxHeader;
 use crate::runtime::{Engine, Runtime, SessionOptions, Sink};
 use crate::tensor::{ElementType, TensorData, TensorInfo, TensorView};
 
-/// The graph executor. It refuses models with operators that it lacks; [`crate::Builtin`] then uses rten.
+/// The built-in runtime: the graph executor. Runs on the CPU only; always available. It refuses models with operators that it
+/// lacks.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct GraphExecutor;
+pub struct Builtin;
 
-impl Runtime for GraphExecutor {
+impl Runtime for Builtin {
     fn name(&self) -> &'static str {
-        "executor"
+        "builtin"
     }
 
     fn version(&self) -> String {
@@ -31,20 +32,31 @@ impl Runtime for GraphExecutor {
     fn open(&self, bytes: &[u8], options: &SessionOptions) -> Result<Box<dyn Engine>> {
         if !matches!(options.device, Device::Auto | Device::Cpu) {
             return Err(Error::device(format!(
-                "the graph executor does not support device {}, only cpu",
+                "the built-in runtime does not support device {}, only cpu; install ONNX Runtime for other devices",
                 options.device
             )));
         }
         let header = OnnxHeader::read(bytes)?;
-        let executor = Executor::open(bytes, compute(options.thread_count()?))?;
+        let executor = Executor::open(bytes, compute(options.thread_count()?)).map_err(with_advice)?;
         let narrow = vec![Vec::new(); header.inputs.len()];
         let truths = vec![Vec::new(); header.outputs.len()];
         Ok(Box::new(ExecutorEngine { executor, header, narrow, truths }))
     }
 
     fn describe(&self) -> String {
-        format!("graph executor ({})", Isa::best())
+        format!("built-in (graph executor, {})", Isa::best())
     }
+}
+
+/// Adds to an error about what the executor lacks that another runtime may have it.
+fn with_advice(error: Error) -> Error {
+    if error.kind() != ErrorKind::Unsupported {
+        return error;
+    }
+    Error::unsupported(format!(
+        "{}; ONNX Runtime may run it: \"opendr runtime install\" installs it",
+        error.message()
+    ))
 }
 
 static POOLS: Mutex<Vec<(usize, Weak<WorkerPool>)>> = Mutex::new(Vec::new());
@@ -95,7 +107,9 @@ impl Engine for ExecutorEngine {
             .map(|((input, shape), narrow)| Tensor { shape, data: data(input, narrow) })
             .collect();
         let (truths, infos) = (&mut self.truths, &self.header.outputs);
-        self.executor.run(&tensors, &mut |outputs| {
+        let mut has_run = false;
+        let ran = self.executor.run(&tensors, &mut |outputs| {
+            has_run = true;
             for ((output, info), truths) in outputs.iter().zip(infos).zip(truths.iter_mut()) {
                 if let (Data::Bool(data), ElementType::Bool) = (output.data, info.element_type) {
                     truths.clear();
@@ -108,7 +122,9 @@ impl Engine for ExecutorEngine {
                 .map(|(output, truths)| view(output, truths))
                 .collect::<Result<SmallVec<[_; 16]>>>()?;
             sink(&views)
-        })
+        });
+        // Errors of the sink stay as they are.
+        if has_run { ran } else { ran.map_err(with_advice) }
     }
 }
 

@@ -1,0 +1,174 @@
+//! Steps, computed constants and layouts of values.
+
+use std::sync::Arc;
+
+use opendr_engine::{Error, Result};
+use opendr_kernels::{ALIGNMENT, Arena, Region};
+
+use crate::constant::Constant;
+use crate::io::{Io, Kernel, Place};
+use crate::planner::{Planner, Step};
+use crate::remap;
+use crate::tensor::{Kind, count};
+use crate::value::{Id, Layout, Source};
+
+/// Bytes of a constant that planning may compute, and of all of them.
+const MAX_CONSTANT: usize = 1 << 28;
+const MAX_CONSTANTS: usize = 1 << 31;
+
+impl Planner<'_> {
+    /// Adds a step, or computes it where it depends on constants only. Outputs are given by type, shape and layout.
+    pub(crate) fn emit(
+        &mut self,
+        kernel: impl Kernel + 'static,
+        reads: &[Option<Id>],
+        outputs: &[(Kind, Vec<usize>, Layout)],
+    ) -> Result<Vec<Id>> {
+        let sizes = outputs
+            .iter()
+            .map(|(kind, shape, _)| Ok(count(shape)? * kind.bytes()))
+            .collect::<Result<Vec<usize>>>()?;
+        let offsets: Vec<usize> = sizes
+            .iter()
+            .scan(0, |offset, size| {
+                let at = *offset;
+                *offset += size.next_multiple_of(ALIGNMENT);
+                Some(at)
+            })
+            .collect();
+        let bytes = sizes.iter().map(|size| size.next_multiple_of(ALIGNMENT)).sum();
+        let known = reads.iter().flatten().all(|&id| matches!(self.values[id].source, Source::Constant(_)));
+        if known && outputs.len() == 1 {
+            return self.evaluate(&kernel, reads, &outputs[0], &sizes);
+        }
+        let buffer = self.buffers.len();
+        self.buffers.push(bytes);
+        self.steps.push(Step {
+            kernel: Box::new(kernel),
+            reads: reads.to_vec(),
+            buffer,
+            sizes,
+            node: self.branching.unwrap_or(self.node),
+        });
+        let mut ids = Vec::new();
+        for ((kind, shape, layout), offset) in outputs.iter().zip(offsets) {
+            ids.push(self.add(*kind, shape.clone(), *layout, Source::Buffer(buffer, offset)));
+        }
+        Ok(ids)
+    }
+
+    fn evaluate(
+        &mut self,
+        kernel: &dyn Kernel,
+        reads: &[Option<Id>],
+        (kind, shape, layout): &(Kind, Vec<usize>, Layout),
+        sizes: &[usize],
+    ) -> Result<Vec<Id>> {
+        let bytes = sizes[0];
+        self.computed = self.computed.saturating_add(bytes);
+        if bytes > MAX_CONSTANT || self.computed > MAX_CONSTANTS {
+            return Err(Error::unsupported(format!("the ONNX model computes a constant of {bytes} bytes")));
+        }
+        let mut varies = self.varying.get();
+        let reads: Vec<Place> = reads
+            .iter()
+            .map(|id| match id.map(|id| &self.values[id].source) {
+                Some(Source::Constant(constant)) => {
+                    varies |= constant.varies;
+                    Place::Constant(Arc::clone(constant))
+                }
+                _ => Place::Absent,
+            })
+            .collect();
+        let mut data = Arena::new(bytes);
+        let (written, rest) = data.split(Region { start: 0, bytes });
+        kernel.run(&mut Io {
+            reads: &reads,
+            inputs: &[],
+            rest,
+            written: Some(written),
+            sizes,
+            compute: self.compute,
+        })?;
+        let constant = Arc::new(Constant { kind: *kind, shape: shape.clone(), data, varies });
+        let id = self.add(*kind, shape.clone(), *layout, Source::Constant(constant));
+        Ok(vec![id])
+    }
+
+    /// Adds a step with one output.
+    pub(crate) fn emit_one(
+        &mut self,
+        kernel: impl Kernel + 'static,
+        reads: &[Id],
+        kind: Kind,
+        shape: Vec<usize>,
+        layout: Layout,
+    ) -> Result<Id> {
+        let reads: Vec<Option<Id>> = reads.iter().copied().map(Some).collect();
+        let ids = self.emit(kernel, &reads, &[(kind, shape, layout)])?;
+        ids.first().copied().ok_or_else(|| Error::internal("a step without an output"))
+    }
+
+    /// Returns the same elements, in the same order of memory, with another shape.
+    pub(crate) fn alias(&mut self, id: Id, shape: Vec<usize>, layout: Layout) -> Id {
+        let value = self.values[id].clone();
+        let source = match value.source {
+            Source::Constant(constant) if layout == Layout::Plain => {
+                let (kind, varies) = (constant.kind, constant.varies);
+                let data = copy(&constant);
+                Source::Constant(Arc::new(Constant { kind, shape: shape.clone(), data, varies }))
+            }
+            other => other,
+        };
+        self.add(value.kind, shape, layout, source)
+    }
+
+    /// Returns a part of a value that a step writes, from a byte on.
+    pub(crate) fn view(&mut self, id: Id, bytes: usize, shape: Vec<usize>) -> Option<Id> {
+        let value = self.values[id].clone();
+        let Source::Buffer(buffer, offset) = value.source else { return None };
+        Some(self.add(value.kind, shape, Layout::Plain, Source::Buffer(buffer, offset + bytes)))
+    }
+
+    /// Returns the value in the order of its shape.
+    pub(crate) fn plain(&mut self, id: Id) -> Result<Id> {
+        self.relaid(id, Layout::Plain)
+    }
+
+    /// Returns the value with channels last; only of rank 3 or more.
+    pub(crate) fn channels_last(&mut self, id: Id) -> Result<Id> {
+        self.relaid(id, Layout::ChannelsLast)
+    }
+
+    fn relaid(&mut self, id: Id, layout: Layout) -> Result<Id> {
+        let value = self.values[id].clone();
+        if value.layout == layout {
+            return Ok(id);
+        }
+        if let Some(other) = value.other {
+            return Ok(other);
+        }
+        let rank = value.shape.len();
+        let pixels: usize = value.shape.iter().skip(2).product();
+        let same = rank < 3 || value.shape[1] == 1 || pixels == 1;
+        let other = if same {
+            self.alias(id, value.shape.clone(), layout)
+        } else {
+            // Dimensions of the result in the order of memory, by those of the source.
+            let mut order: Vec<usize> = (0..rank).collect();
+            match layout {
+                Layout::ChannelsLast => order[1..].rotate_left(1),
+                Layout::Plain => order[1..].rotate_right(1),
+            }
+            let remap = remap::transposed(&value.physical(), &order, value.kind.bytes());
+            self.emit_one(remap, &[id], value.kind, value.shape.clone(), layout)?
+        };
+        self.values[id].other = Some(other);
+        self.values[other].other = Some(id);
+        Ok(other)
+    }
+}
+
+fn copy(constant: &Constant) -> Arena {
+    Arena::from_numbers(constant.data.get::<u8>(constant.region()))
+}
