@@ -12,6 +12,7 @@ use super::episode::Episode;
 use super::frontiers::{Candidate, Frontiers};
 use super::grid::{CELLS, cell_of, disc, distance, middle};
 use super::route::Route;
+use super::tour::{PLACES, Tour};
 use super::{LIMIT, OBJECTS, ObjectSearchParams};
 use crate::RegisteredEnvironment;
 use crate::arctangent::arctangent2;
@@ -32,13 +33,14 @@ pub struct FrontierSearch {
     params: ObjectSearchParams,
     episode: Option<Episode>,
     frontiers: Frontiers,
+    tour: Tour,
     route: Route,
     last: [f64; 2],
     path: Vec<[f64; 2]>,
 }
 
 /// Candidates of an observation, numbers of each, and further numbers.
-const CANDIDATES: usize = 8;
+const CANDIDATES: usize = PLACES;
 const FEATURES: usize = 9;
 const FURTHER: usize = 5;
 /// Steps after which another choice is made.
@@ -83,6 +85,7 @@ impl RegisteredEnvironment for FrontierSearch {
             params: params.clone(),
             episode: None,
             frontiers: Frontiers::default(),
+            tour: Tour::default(),
             route: Route::default(),
             last: [0.0; 2],
             path: Vec::new(),
@@ -94,6 +97,7 @@ impl FrontierSearch {
     fn find(&mut self) -> Result<()> {
         let episode = self.episode.as_ref().ok_or_else(|| not_begun(&self.spec))?;
         self.frontiers.find(episode);
+        self.tour.plan(&episode.map, &self.frontiers.candidates);
         Ok(())
     }
 
@@ -114,7 +118,7 @@ impl FrontierSearch {
                 cosine,
                 sine,
                 candidate.size as f64 / 20.0,
-                candidate.unknown,
+                candidate.unknown[0],
                 distance(self.last, place) / 5.0,
                 isolation / 5.0,
             ];

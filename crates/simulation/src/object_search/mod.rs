@@ -19,6 +19,7 @@ mod route;
 mod sensor;
 #[cfg(test)]
 mod tests;
+mod tour;
 mod view;
 
 pub use environment::ObjectSearch;
