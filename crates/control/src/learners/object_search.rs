@@ -1,11 +1,11 @@
 //! The training of multi-object search.
 
-use opendr_engine::environment::EnvironmentSpec;
+use opendr_engine::environment::{EnvironmentSpec, Space};
 use opendr_engine::learner::Spec;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Task};
 use opendr_kernels::Compute;
-use opendr_rl::{Method, Policy, Ppo, PpoConfig, PpoFitParams, PpoMethod, RlTrainingParams};
+use opendr_rl::{Algorithm as _, Method, Policy, Ppo, PpoConfig, PpoFitParams, PpoMethod, RlTrainingParams, Schedule};
 
 /// Training parameters of multi-object search.
 #[derive(Debug, Clone, PartialEq, Params)]
@@ -16,8 +16,9 @@ pub struct MultiObjectSearchRlFitParams {
         n_steps = 128,
         batch_size = 256,
         n_epochs = 4,
-        gamma = 0.99,
-        ent_coef = 0.005,
+        gamma = 0.998,
+        ent_coef = 0.003,
+        learning_rate_schedule = Schedule::Linear,
         norm_obs = true
     )]
     pub config: PpoConfig,
@@ -60,6 +61,21 @@ impl Method for MultiObjectSearchRlMethod {
         base: Option<&Policy>,
     ) -> Result<Ppo> {
         let params = PpoFitParams { config: params.config.clone(), ..PpoFitParams::default() };
-        PpoMethod::algorithm(&params, spec, compute, base)
+        let mut ppo = PpoMethod::algorithm(&params, spec, compute, base)?;
+        if let (None, Space::Discrete { n, .. }) = (base, &spec.action) {
+            let mut policy = ppo.policy().clone();
+            prefer_first(&mut policy, *n as usize);
+            ppo.set_policy(&policy)?;
+        }
+        Ok(ppo)
     }
+}
+
+/// Lets a policy over `choices` begin with the first ones as the most likely, each by a factor of e before the next. In the frontier
+/// environment the first choice is the nearest one: the training begins at frontier exploration.
+fn prefer_first(policy: &mut Policy, choices: usize) {
+    let layer = policy.last_layer();
+    // The biases are the last parameters of a layer.
+    let biases = policy.parameters_mut()[layer].iter_mut().rev().take(choices).rev();
+    biases.enumerate().for_each(|(choice, bias)| *bias = -(choice as f32));
 }

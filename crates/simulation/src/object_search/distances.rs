@@ -35,12 +35,6 @@ impl Default for Distances {
 impl Distances {
     /// Computes the lengths from `start` over the cells that `free` allows; the start need not be free.
     pub fn compute(&mut self, start: usize, free: impl Fn(usize) -> bool) {
-        self.compute_to(start, &[], free);
-    }
-
-    /// Computes the lengths as [`Self::compute`] does, until those of all `ends` are known; without ends, of all cells.
-    pub fn compute_to(&mut self, start: usize, ends: &[usize], free: impl Fn(usize) -> bool) {
-        let mut left = ends.len();
         self.lengths.fill(u32::MAX);
         self.buckets.iter_mut().for_each(Vec::clear);
         let Some(first) = self.lengths.get_mut(start) else { return };
@@ -52,12 +46,6 @@ impl Distances {
                 waiting -= 1;
                 if self.lengths[cell as usize] != length {
                     continue;
-                }
-                if left > 0 {
-                    left -= ends.iter().filter(|end| **end == cell as usize).count().min(left);
-                    if left == 0 {
-                        return;
-                    }
                 }
                 let [x, y] = column_row(cell as usize);
                 for ([right, down], step) in NEIGHBOURS {

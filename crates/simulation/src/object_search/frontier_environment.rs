@@ -12,7 +12,6 @@ use super::episode::Episode;
 use super::frontiers::{Candidate, Frontiers};
 use super::grid::{CELLS, cell_of, disc, distance, middle};
 use super::route::Route;
-use super::tour::{PLACES, Tour};
 use super::{LIMIT, OBJECTS, ObjectSearchParams};
 use crate::RegisteredEnvironment;
 use crate::arctangent::arctangent2;
@@ -22,10 +21,10 @@ use crate::sine_cosine::sine_cosine;
 /// `ObjectSearch2D-frontier-v1`: the search of `ObjectSearch2D-v1`, whose actions choose a frontier of the map or a seen object.
 ///
 /// Candidates are ordered by the length of the way; the robot drives to the chosen one on the shortest known way, until it is
-/// resolved or an object is seen or found. Of a number above the last candidate the last one is chosen. An observation has nine
+/// resolved or an object is seen or found. Of a number above the last candidate the last one is chosen. An observation has ten
 /// numbers for each of eight candidates: whether it exists, is an object, length of the way / 5 m, bearing (cosine, sine), size of
-/// the frontier / 20 cells, share of unknown cells within 1.2 m, distance / 5 m from the last choice and from the nearest other
-/// candidate; then shares of objects found and seen, of the flat known, of the 3500 steps used, and of eight candidates. The
+/// the frontier / 20 cells, shares of unknown cells within 1.2 and 2.5 m, distance / 5 m from the last choice and from the nearest
+/// other candidate; then shares of objects found and seen, of the flat known, of the 3500 steps used, and of eight candidates. The
 /// reward is 1 for each object found, less 0.1 for each metre. Episodes end as there, or where nothing is left to explore.
 #[derive(Debug, Clone)]
 pub struct FrontierSearch {
@@ -33,15 +32,14 @@ pub struct FrontierSearch {
     params: ObjectSearchParams,
     episode: Option<Episode>,
     frontiers: Frontiers,
-    tour: Tour,
     route: Route,
     last: [f64; 2],
     path: Vec<[f64; 2]>,
 }
 
 /// Candidates of an observation, numbers of each, and further numbers.
-const CANDIDATES: usize = PLACES;
-const FEATURES: usize = 9;
+const CANDIDATES: usize = 8;
+const FEATURES: usize = 10;
 const FURTHER: usize = 5;
 /// Steps after which another choice is made.
 const LONGEST_DRIVE: u32 = 150;
@@ -85,7 +83,6 @@ impl RegisteredEnvironment for FrontierSearch {
             params: params.clone(),
             episode: None,
             frontiers: Frontiers::default(),
-            tour: Tour::default(),
             route: Route::default(),
             last: [0.0; 2],
             path: Vec::new(),
@@ -97,7 +94,6 @@ impl FrontierSearch {
     fn find(&mut self) -> Result<()> {
         let episode = self.episode.as_ref().ok_or_else(|| not_begun(&self.spec))?;
         self.frontiers.find(episode);
-        self.tour.plan(&episode.map, &self.frontiers.candidates);
         Ok(())
     }
 
@@ -111,6 +107,7 @@ impl FrontierSearch {
             let (sine, cosine) = sine_cosine(arctangent2(place[1] - y, place[0] - x) - yaw);
             let others = candidates.iter().filter(|other| other.look != candidate.look);
             let isolation = others.map(|other| distance(middle(other.look), place)).fold(10.0, f64::min);
+            let [near, far] = candidate.unknown;
             let numbers = [
                 1.0,
                 f64::from(u8::from(candidate.object.is_some())),
@@ -118,7 +115,8 @@ impl FrontierSearch {
                 cosine,
                 sine,
                 candidate.size as f64 / 20.0,
-                candidate.unknown[0],
+                near,
+                far,
                 distance(self.last, place) / 5.0,
                 isolation / 5.0,
             ];

@@ -19,7 +19,6 @@ mod route;
 mod sensor;
 #[cfg(test)]
 mod tests;
-mod tour;
 mod view;
 
 pub use environment::ObjectSearch;
