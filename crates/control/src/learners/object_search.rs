@@ -1,11 +1,17 @@
 //! The training of multi-object search.
 
-use opendr_engine::environment::{EnvironmentSpec, Space};
+use opendr_engine::environment::EnvironmentSpec;
 use opendr_engine::learner::Spec;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Task};
 use opendr_kernels::Compute;
-use opendr_rl::{Algorithm as _, Method, Policy, Ppo, PpoConfig, PpoFitParams, PpoMethod, RlTrainingParams, Schedule};
+use opendr_rl::prior::{DemonstratedSteps, MakeEnvironment, begin_as_clone};
+use opendr_rl::{
+    Algorithm as _, BehaviourCloningConfig, Method, Policy, Ppo, PpoConfig, PpoFitParams, PpoMethod,
+    RlTrainingParams, Schedule,
+};
+use opendr_simulation::RegisteredEnvironment as _;
+use opendr_simulation::object_search::{FrontierSearch, NearestFrontier};
 
 /// Training parameters of multi-object search.
 #[derive(Debug, Clone, PartialEq, Params)]
@@ -18,10 +24,12 @@ pub struct MultiObjectSearchRlFitParams {
         n_epochs = 4,
         gamma = 0.998,
         ent_coef = 0.003,
-        learning_rate_schedule = Schedule::Linear,
-        norm_obs = true
+        learning_rate_schedule = Schedule::Linear
     )]
     pub config: PpoConfig,
+    /// Episodes of frontier exploration from which the policy is cloned before the training; 0 begins without.
+    #[param(default = 60, range = 0..=1_000_000)]
+    pub demonstration_episodes: u64,
     /// Settings of any training in environments.
     #[param(
         flatten,
@@ -33,6 +41,11 @@ pub struct MultiObjectSearchRlFitParams {
     )]
     pub training: RlTrainingParams,
 }
+
+/// Seed of the first demonstrated episode, far from those of trainings and evaluations.
+const FIRST_SEED: u64 = 1 << 42;
+/// Weight of the entropy while the policy is cloned: it still tries what is about as near.
+const CLONED_ENTROPY: f32 = 0.1;
 
 /// PPO in `ObjectSearch2D-frontier-v1`, whose actions choose among the frontiers of the map. It also trains in
 /// `ObjectSearch2D-v1`, whose actions are OpenDR's speed and turn rate.
@@ -54,6 +67,22 @@ impl Method for MultiObjectSearchRlMethod {
         &params.training
     }
 
+    fn prepare(
+        params: &MultiObjectSearchRlFitParams,
+        algorithm: &mut Ppo,
+        from_base: bool,
+        make: MakeEnvironment<'_>,
+    ) -> Result<()> {
+        let mut environment = make()?;
+        if from_base || environment.spec().id != FrontierSearch::ID || params.demonstration_episodes == 0 {
+            return Ok(());
+        }
+        let seeds = FIRST_SEED..FIRST_SEED + params.demonstration_episodes;
+        let steps = DemonstratedSteps::record(&mut NearestFrontier, &mut *environment, seeds)?;
+        let config = BehaviourCloningConfig { ent_weight: CLONED_ENTROPY, ..BehaviourCloningConfig::default() };
+        begin_as_clone(algorithm, &steps, &config, &Compute::single()).map(drop)
+    }
+
     fn algorithm(
         params: &MultiObjectSearchRlFitParams,
         spec: &EnvironmentSpec,
@@ -61,21 +90,12 @@ impl Method for MultiObjectSearchRlMethod {
         base: Option<&Policy>,
     ) -> Result<Ppo> {
         let params = PpoFitParams { config: params.config.clone(), ..PpoFitParams::default() };
-        let mut ppo = PpoMethod::algorithm(&params, spec, compute, base)?;
-        if let (None, Space::Discrete { n, .. }) = (base, &spec.action) {
-            let mut policy = ppo.policy().clone();
-            prefer_first(&mut policy, *n as usize);
-            ppo.set_policy(&policy)?;
+        if spec.id != FrontierSearch::ID {
+            return PpoMethod::algorithm(&params, spec, compute, base);
         }
+        let mut ppo =
+            PpoMethod::algorithm(&params, spec, compute, None)?.scoring_choices(FrontierSearch::FEATURES)?;
+        base.map_or(Ok(()), |base| ppo.set_policy(base))?;
         Ok(ppo)
     }
-}
-
-/// Lets a policy over `choices` begin with the first ones as the most likely, each by a factor of e before the next. In the frontier
-/// environment the first choice is the nearest one: the training begins at frontier exploration.
-fn prefer_first(policy: &mut Policy, choices: usize) {
-    let layer = policy.last_layer();
-    // The biases are the last parameters of a layer.
-    let biases = policy.parameters_mut()[layer].iter_mut().rev().take(choices).rev();
-    biases.enumerate().for_each(|(choice, bias)| *bias = -(choice as f32));
 }

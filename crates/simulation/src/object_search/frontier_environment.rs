@@ -37,9 +37,8 @@ pub struct FrontierSearch {
     path: Vec<[f64; 2]>,
 }
 
-/// Candidates of an observation, numbers of each, and further numbers.
+/// Candidates of an observation, and further numbers.
 const CANDIDATES: usize = 8;
-const FEATURES: usize = 10;
 const FURTHER: usize = 5;
 /// Steps after which another choice is made.
 const LONGEST_DRIVE: u32 = 150;
@@ -73,7 +72,7 @@ impl RegisteredEnvironment for FrontierSearch {
 
     fn new(params: &ObjectSearchParams) -> Result<Self> {
         params.check()?;
-        let numbers = [f32::INFINITY; CANDIDATES * FEATURES + FURTHER];
+        let numbers = [f32::INFINITY; CANDIDATES * Self::FEATURES + FURTHER];
         let spec =
             EnvironmentSpec::new(Self::ID, Space::symmetric(&numbers), Space::discrete(CANDIDATES as u32))
                 .with_max_episode_steps(LIMIT)
@@ -91,6 +90,9 @@ impl RegisteredEnvironment for FrontierSearch {
 }
 
 impl FrontierSearch {
+    /// Numbers of each candidate in an observation.
+    pub const FEATURES: usize = 10;
+
     fn find(&mut self) -> Result<()> {
         let episode = self.episode.as_ref().ok_or_else(|| not_begun(&self.spec))?;
         self.frontiers.find(episode);
@@ -102,7 +104,7 @@ impl FrontierSearch {
         observation.fill(0.0);
         let [x, y, yaw] = episode.pose;
         let candidates = &self.frontiers.candidates;
-        for (seen, candidate) in observation.chunks_exact_mut(FEATURES).zip(candidates).take(CANDIDATES) {
+        for (seen, candidate) in observation.chunks_exact_mut(Self::FEATURES).zip(candidates).take(CANDIDATES) {
             let place = middle(candidate.look);
             let (sine, cosine) = sine_cosine(arctangent2(place[1] - y, place[0] - x) - yaw);
             let others = candidates.iter().filter(|other| other.look != candidate.look);
@@ -133,7 +135,7 @@ impl FrontierSearch {
             f64::from(episode.steps) / f64::from(LIMIT),
             candidates.len() as f64 / CANDIDATES as f64,
         ];
-        for (seen, number) in observation.iter_mut().skip(CANDIDATES * FEATURES).zip(further) {
+        for (seen, number) in observation.iter_mut().skip(CANDIDATES * Self::FEATURES).zip(further) {
             *seen = number as f32;
         }
         Ok(())
