@@ -16,7 +16,8 @@ use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::{Device, Error, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{
-    ActionMode, EvaluationProtocol, POLICY_FILE, Policy, PolicyMemory, SuccessRate, evaluate, evaluate_controller,
+    ActionMode, EvaluationProtocol, POLICY_FILE, Policy, PolicyMemory, SuccessRate, evaluate,
+    evaluate_controller,
 };
 use opendr_simulation::mobile_manipulation::{BaseFollows, BaseKind, BaseStill, ReachKeeper};
 use opendr_simulation::object_search::NearestFrontier;
@@ -32,7 +33,9 @@ fn main() -> Result<()> {
     let (pairs, plain): (Vec<_>, Vec<_>) = arguments.iter().partition(|text| text.contains('='));
     let number = |at: usize, default: u64| match plain.get(at).map(|text| text.parse::<u64>()) {
         None => Ok(default),
-        Some(number) => number.map_err(|_| Error::invalid_param("give the numbers of seeds and episodes, and the first seed of those")),
+        Some(number) => number.map_err(|_| {
+            Error::invalid_param("give the numbers of seeds and episodes, and the first seed of those")
+        }),
     };
     let (seeds, episodes) = (number(1, 5)?, number(2, 500)?);
     let first_seed = number(3, EvaluationProtocol::default().first_seed)?;
@@ -95,7 +98,10 @@ impl Run<'_> {
             }
         }
         for (id, rates) in ids.iter().zip(&mut successes) {
-            rates.sort_by(|one, other| one.success.rate.total_cmp(&other.success.rate));
+            rates.sort_by(|one, other| {
+                let [one_rate, other_rate] = [one, other].map(|rates| rates.success.rate);
+                one_rate.total_cmp(&other_rate).then(one.weighted.total_cmp(&other.weighted))
+            });
             if let [lowest, .., highest] = &rates[..] {
                 let median = &rates[rates.len() / 2];
                 println!("{id}: median {median}; lowest {lowest}; highest {highest}");

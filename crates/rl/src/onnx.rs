@@ -101,11 +101,7 @@ impl Graph {
 
     fn slice(&mut self, of: &GraphTensor, columns: Range<usize>) -> Result<GraphTensor> {
         let ends = [columns.start as i64, columns.end as i64].map(|end| GraphTensor::ints([end]));
-        self.add(
-            Operator::new("Slice"),
-            &[of, &ends[0], &ends[1], &GraphTensor::ints([1])],
-            columns.len(),
-        )
+        self.add(Operator::new("Slice"), &[of, &ends[0], &ends[1], &GraphTensor::ints([1])], columns.len())
     }
 
     /// Adds a network that scores each choice by its own features and the common ones.

@@ -19,12 +19,12 @@ pub struct MultiObjectSearchRlFitParams {
     /// Settings of PPO.
     #[param(
         flatten,
-        n_steps = 128,
-        batch_size = 256,
+        learning_rate = 1e-3,
+        learning_rate_schedule = Schedule::Linear,
+        n_steps = 256,
+        batch_size = 512,
         n_epochs = 4,
-        gamma = 0.998,
-        ent_coef = 0.003,
-        learning_rate_schedule = Schedule::Linear
+        gae_lambda = 0.9
     )]
     pub config: PpoConfig,
     /// Episodes of frontier exploration from which the policy is cloned before the training; 0 begins without.
@@ -33,7 +33,7 @@ pub struct MultiObjectSearchRlFitParams {
     /// Settings of any training in environments.
     #[param(
         flatten,
-        total_timesteps = 300_000,
+        total_timesteps = 100_000,
         n_envs = 16,
         num_workers = 2,
         eval_freq = 0,
@@ -79,7 +79,8 @@ impl Method for MultiObjectSearchRlMethod {
         }
         let seeds = FIRST_SEED..FIRST_SEED + params.demonstration_episodes;
         let steps = DemonstratedSteps::record(&mut NearestFrontier, &mut *environment, seeds)?;
-        let config = BehaviourCloningConfig { ent_weight: CLONED_ENTROPY, ..BehaviourCloningConfig::default() };
+        let config =
+            BehaviourCloningConfig { ent_weight: CLONED_ENTROPY, ..BehaviourCloningConfig::default() };
         begin_as_clone(algorithm, &steps, &config, &Compute::single()).map(drop)
     }
 
@@ -93,8 +94,13 @@ impl Method for MultiObjectSearchRlMethod {
         if spec.id != FrontierSearch::ID {
             return PpoMethod::algorithm(&params, spec, compute, base);
         }
-        let mut ppo =
-            PpoMethod::algorithm(&params, spec, compute, None)?.scoring_choices(FrontierSearch::FEATURES)?;
+        let mut config = params.config;
+        if let Some(base) = base {
+            config.network = base.network().clone();
+            config.norm_obs = base.encoder().normaliser.is_some();
+        }
+        let ppo = Ppo::new(&config, spec)?.with_compute(compute);
+        let mut ppo = ppo.scoring_choices(FrontierSearch::FEATURES)?;
         base.map_or(Ok(()), |base| ppo.set_policy(base))?;
         Ok(ppo)
     }

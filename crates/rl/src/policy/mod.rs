@@ -105,12 +105,13 @@ impl Policy {
             return Err(Error::unsupported(format!("a network scores one choice, not {}", self.action)));
         };
         let choices = Choices { count: *count as usize, own: features };
-        let common = inputs.checked_sub(choices.count * features).filter(|_| features > 0).ok_or_else(|| {
-            Error::invalid_input(format!(
-                "{features} numbers for each of {} choices, but the observation has {inputs}",
-                choices.count
-            ))
-        })?;
+        let common =
+            inputs.checked_sub(choices.count * features).filter(|_| features > 0).ok_or_else(|| {
+                Error::invalid_input(format!(
+                    "{features} numbers for each of {} choices, but the observation has {inputs}",
+                    choices.count
+                ))
+            })?;
         self.trunk = Trunk::scoring(choices, self.config.network(features + common, 1)?);
         self.parameters = vec![0.0; self.trunk.parameters()];
         Ok(())
@@ -157,6 +158,11 @@ impl Policy {
     /// Returns the head that converts network outputs into actions.
     pub fn head(&self) -> &Head {
         &self.head
+    }
+
+    /// Returns the settings of the networks.
+    pub fn network(&self) -> &NetworkConfig {
+        &self.config
     }
 
     /// Returns the encoder of observations, with the normaliser.

@@ -254,4 +254,41 @@ mod tests {
             assert_eq!(trunk.step(&compute, &parameters, features, &mut states, &mut memory), wanted);
         }
     }
+
+    /// Scores follow their choices into any order, and their gradients are differences.
+    #[test]
+    fn choices_are_scored_one_by_one() {
+        let choices = Choices { count: 3, own: 2 };
+        let config = NetworkConfig { net_arch: vec![5], ..NetworkConfig::default() };
+        let (trunk, mut random) =
+            (Trunk::scoring(choices, config.network(3, 1).unwrap()), Random::new(3));
+        let mut parameters = vec![0.0; trunk.parameters()];
+        trunk.initialise(Initialisation::Uniform, &mut random, &mut parameters);
+        let (compute, mut memory) = (Compute::single(), TrunkMemory::default());
+        let features: Vec<f32> = (0..2 * 7).map(|_| random.uniform(-1.0, 1.0)).collect();
+        let mut scores = |parameters: &[f32], features: &[f32]| {
+            trunk.forward(&compute, parameters, features, Sequences::default(), &mut memory).to_vec()
+        };
+        let first = scores(&parameters, &features);
+        let mut turned = features.clone();
+        turned.chunks_exact_mut(7).for_each(|row| row[..6].rotate_left(2));
+        let mut wanted = first.clone();
+        wanted.chunks_exact_mut(3).for_each(|scores| scores.rotate_left(1));
+        assert_eq!(scores(&parameters, &turned), wanted);
+        let weights = [1.0, -0.5, 0.25, 2.0, 0.0, -1.0];
+        let mut loss = |at: usize, by: f32| {
+            let mut parameters = parameters.clone();
+            parameters[at] += by;
+            scores(&parameters, &features).iter().zip(weights).map(|(score, weight)| score * weight).sum::<f32>()
+        };
+        let step = 1.0 / 128.0;
+        let differences: Vec<_> =
+            (0..parameters.len()).map(|at| (loss(at, step) - loss(at, -step)) / (2.0 * step)).collect();
+        scores(&parameters, &features);
+        let mut gradients = vec![0.0; parameters.len()];
+        trunk.backward(&compute, &parameters, &weights, &[], &mut memory, &mut gradients, false);
+        for (at, (got, wanted)) in gradients.iter().zip(differences).enumerate() {
+            assert!((got - wanted).abs() < 2e-3, "{at}: {got} {wanted}");
+        }
+    }
 }

@@ -104,7 +104,8 @@ impl FrontierSearch {
         observation.fill(0.0);
         let [x, y, yaw] = episode.pose;
         let candidates = &self.frontiers.candidates;
-        for (seen, candidate) in observation.chunks_exact_mut(Self::FEATURES).zip(candidates).take(CANDIDATES) {
+        for (seen, candidate) in observation.chunks_exact_mut(Self::FEATURES).zip(candidates).take(CANDIDATES)
+        {
             let place = middle(candidate.look);
             let (sine, cosine) = sine_cosine(arctangent2(place[1] - y, place[0] - x) - yaw);
             let others = candidates.iter().filter(|other| other.look != candidate.look);
