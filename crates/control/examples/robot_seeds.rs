@@ -20,7 +20,7 @@ use opendr_rl::{
     evaluate_controller,
 };
 use opendr_simulation::mobile_manipulation::{BaseFollows, BaseKind, BaseStill, ReachKeeper};
-use opendr_simulation::object_search::NearestFrontier;
+use opendr_simulation::object_search::{NearestFrontier, ObjectsNearer};
 use opendr_simulation::{RegisteredSource, Registry};
 
 const SEARCH: &str = "ObjectSearch2D-frontier-v1";
@@ -46,8 +46,13 @@ fn main() -> Result<()> {
         Some("omni") => run.all::<MobileRl>(&mobile(""), &controllers(BaseKind::Omni)),
         Some("diff") => run.all::<MobileRl>(&mobile("-diff"), &controllers(BaseKind::Diff)),
         Some("search") => {
-            let nearest = || vec![("nearest frontier", Box::new(NearestFrontier) as Box<dyn Controller>)];
-            run.all::<MultiObjectSearchRl>(&[SEARCH.to_owned()], &nearest)
+            let rules = || -> Vec<Named> {
+                vec![
+                    ("nearest frontier", Box::new(NearestFrontier)),
+                    ("nearest, objects 1 m nearer", Box::new(ObjectsNearer)),
+                ]
+            };
+            run.all::<MultiObjectSearchRl>(&[SEARCH.to_owned()], &rules)
         }
         _ => Err(Error::invalid_param("the first argument is omni, diff or search")),
     }

@@ -34,8 +34,11 @@ fn main() -> Result<()> {
     (0..40).try_for_each(|_| sac.iterate(&mut *pendulums, 10_000).map(drop))?;
     export(&folder, "sac_pendulum", sac.policy())?;
 
-    let choices =
-        EnvironmentSpec::new("choices", Space::symmetric(&[1.0; 4 * 3 + 2]), Space::Discrete { n: 4, start: 1 });
+    let choices = EnvironmentSpec::new(
+        "choices",
+        Space::symmetric(&[1.0; 4 * 3 + 2]),
+        Space::Discrete { n: 4, start: 1 },
+    );
     let mut policy =
         Policy::new(&choices, Head::stochastic(&choices.action)?, &NetworkConfig::default(), None)?;
     policy.score_choices(3)?;

@@ -11,7 +11,7 @@ use opendr_rl::{
     RlTrainingParams, Schedule,
 };
 use opendr_simulation::RegisteredEnvironment as _;
-use opendr_simulation::object_search::{FrontierSearch, NearestFrontier};
+use opendr_simulation::object_search::{FrontierSearch, ObjectsNearer};
 
 /// Training parameters of multi-object search.
 #[derive(Debug, Clone, PartialEq, Params)]
@@ -27,7 +27,7 @@ pub struct MultiObjectSearchRlFitParams {
         gae_lambda = 0.9
     )]
     pub config: PpoConfig,
-    /// Episodes of frontier exploration from which the policy is cloned before the training; 0 begins without.
+    /// Episodes of frontier exploration that prefers seen objects, from which the policy is cloned before the training; 0 begins without.
     #[param(default = 60, range = 0..=1_000_000)]
     pub demonstration_episodes: u64,
     /// Settings of any training in environments.
@@ -78,7 +78,7 @@ impl Method for MultiObjectSearchRlMethod {
             return Ok(());
         }
         let seeds = FIRST_SEED..FIRST_SEED + params.demonstration_episodes;
-        let steps = DemonstratedSteps::record(&mut NearestFrontier, &mut *environment, seeds)?;
+        let steps = DemonstratedSteps::record(&mut ObjectsNearer, &mut *environment, seeds)?;
         let config =
             BehaviourCloningConfig { ent_weight: CLONED_ENTROPY, ..BehaviourCloningConfig::default() };
         begin_as_clone(algorithm, &steps, &config, &Compute::single()).map(drop)

@@ -260,8 +260,7 @@ mod tests {
     fn choices_are_scored_one_by_one() {
         let choices = Choices { count: 3, own: 2 };
         let config = NetworkConfig { net_arch: vec![5], ..NetworkConfig::default() };
-        let (trunk, mut random) =
-            (Trunk::scoring(choices, config.network(3, 1).unwrap()), Random::new(3));
+        let (trunk, mut random) = (Trunk::scoring(choices, config.network(3, 1).unwrap()), Random::new(3));
         let mut parameters = vec![0.0; trunk.parameters()];
         trunk.initialise(Initialisation::Uniform, &mut random, &mut parameters);
         let (compute, mut memory) = (Compute::single(), TrunkMemory::default());
@@ -279,7 +278,11 @@ mod tests {
         let mut loss = |at: usize, by: f32| {
             let mut parameters = parameters.clone();
             parameters[at] += by;
-            scores(&parameters, &features).iter().zip(weights).map(|(score, weight)| score * weight).sum::<f32>()
+            scores(&parameters, &features)
+                .iter()
+                .zip(weights)
+                .map(|(score, weight)| score * weight)
+                .sum::<f32>()
         };
         let step = 1.0 / 128.0;
         let differences: Vec<_> =

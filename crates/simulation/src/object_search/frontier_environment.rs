@@ -66,6 +66,32 @@ impl Controller for NearestFrontier {
     }
 }
 
+/// Drives to the nearest frontier or seen object, of which objects count as one metre nearer than they are.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ObjectsNearer;
+
+impl Controller for ObjectsNearer {
+    fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        let candidates = observation.chunks_exact(FrontierSearch::FEATURES).take(CANDIDATES);
+        // The first three numbers: whether there is a candidate, whether it is an object, length of the way / 5 m.
+        let ways = candidates.enumerate().filter_map(|(at, numbers)| match numbers {
+            [exists, object, length, ..] if *exists > 0.0 => Some((at, 5.0 * length - object)),
+            _ => None,
+        });
+        let nearest = ways.min_by(|(_, one), (_, other)| one.total_cmp(other));
+        action.fill(nearest.map_or(0.0, |(at, _)| at as f32));
+        Ok(())
+    }
+
+    fn save_state(&self, _: &mut Snapshot) -> Result<()> {
+        Ok(())
+    }
+
+    fn load_state(&mut self, _: &mut StateReader<'_>) -> Result<()> {
+        Ok(())
+    }
+}
+
 impl RegisteredEnvironment for FrontierSearch {
     const ID: &'static str = "ObjectSearch2D-frontier-v1";
     type Params = ObjectSearchParams;
