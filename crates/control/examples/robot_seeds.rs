@@ -2,7 +2,7 @@
 //! controllers; further arguments are parameters of the training, and `env.NAME=VALUE` of the environments:
 //!
 //! ```console
-//! $ cargo run --release -p opendr-control --example robot_seeds -- omni [SEEDS [EPISODES]] [NAME=VALUE ...]
+//! $ cargo run --release -p opendr-control --example robot_seeds -- omni [SEEDS [EPISODES [FIRST_SEED]]] [NAME=VALUE ...]
 //! $ cargo run --release -p opendr-control --example robot_seeds -- diff
 //! $ cargo run --release -p opendr-control --example robot_seeds -- search
 //! ```
@@ -14,9 +14,13 @@ use opendr_engine::environment::{Controller, Environment, Step};
 use opendr_engine::learner::{FitJob, Handle, LearnerRl};
 use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::{Device, Error, Result};
-use opendr_rl::{EvaluationProtocol, POLICY_FILE, Policy, SuccessRate, evaluate, evaluate_controller};
+use opendr_kernels::Compute;
+use opendr_rl::{
+    ActionMode, EvaluationProtocol, POLICY_FILE, Policy, PolicyMemory, SuccessRate, evaluate,
+    evaluate_controller,
+};
 use opendr_simulation::mobile_manipulation::{BaseFollows, BaseKind, BaseStill, ReachKeeper};
-use opendr_simulation::object_search::NearestFrontier;
+use opendr_simulation::object_search::{NearestFrontier, ObjectsNearer};
 use opendr_simulation::{RegisteredSource, Registry};
 
 const SEARCH: &str = "ObjectSearch2D-frontier-v1";
@@ -29,18 +33,26 @@ fn main() -> Result<()> {
     let (pairs, plain): (Vec<_>, Vec<_>) = arguments.iter().partition(|text| text.contains('='));
     let number = |at: usize, default: u64| match plain.get(at).map(|text| text.parse::<u64>()) {
         None => Ok(default),
-        Some(number) => number.map_err(|_| Error::invalid_param("give the numbers of seeds and episodes")),
+        Some(number) => number.map_err(|_| {
+            Error::invalid_param("give the numbers of seeds and episodes, and the first seed of those")
+        }),
     };
     let (seeds, episodes) = (number(1, 5)?, number(2, 500)?);
-    let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
+    let first_seed = number(3, EvaluationProtocol::default().first_seed)?;
+    let protocol = EvaluationProtocol { episodes, first_seed, ..EvaluationProtocol::default() };
     let run =
         Run { seeds, protocol, pairs: pairs.into_iter().filter_map(|pair| pair.split_once('=')).collect() };
     match plain.first().map(|text| text.as_str()) {
         Some("omni") => run.all::<MobileRl>(&mobile(""), &controllers(BaseKind::Omni)),
         Some("diff") => run.all::<MobileRl>(&mobile("-diff"), &controllers(BaseKind::Diff)),
         Some("search") => {
-            let nearest = || vec![("nearest frontier", Box::new(NearestFrontier) as Box<dyn Controller>)];
-            run.all::<MultiObjectSearchRl>(&[SEARCH.to_owned()], &nearest)
+            let rules = || -> Vec<Named> {
+                vec![
+                    ("nearest frontier", Box::new(NearestFrontier)),
+                    ("nearest, objects 1 m nearer", Box::new(ObjectsNearer)),
+                ]
+            };
+            run.all::<MultiObjectSearchRl>(&[SEARCH.to_owned()], &rules)
         }
         _ => Err(Error::invalid_param("the first argument is omni, diff or search")),
     }
@@ -83,6 +95,7 @@ impl Run<'_> {
             let begun = Instant::now();
             let policy = self.trained::<L>(first, seed)?;
             println!("seed {seed}: trained in {:.0} s", begun.elapsed().as_secs_f64());
+            println!("  a policy call takes {:.1} us", 1e6 * call_seconds(&policy)?);
             for (id, successes) in ids.iter().zip(&mut successes) {
                 let rates = self.measured(&mut *self.made(id, false)?, None, Some(&policy))?;
                 println!("  {id}: {rates}");
@@ -90,7 +103,10 @@ impl Run<'_> {
             }
         }
         for (id, rates) in ids.iter().zip(&mut successes) {
-            rates.sort_by(|one, other| one.success.rate.total_cmp(&other.success.rate));
+            rates.sort_by(|one, other| {
+                let [one_rate, other_rate] = [one, other].map(|rates| rates.success.rate);
+                one_rate.total_cmp(&other_rate).then(one.weighted.total_cmp(&other.weighted))
+            });
             if let [lowest, .., highest] = &rates[..] {
                 let median = &rates[rates.len() / 2];
                 println!("{id}: median {median}; lowest {lowest}; highest {highest}");
@@ -160,6 +176,19 @@ impl Run<'_> {
             few_failures: share(f64::from(counting.few_failures)),
         })
     }
+}
+
+/// Returns the mean time of a call of a policy with one observation, in seconds, on one thread.
+fn call_seconds(policy: &Policy) -> Result<f64> {
+    const CALLS: u32 = 20_000;
+    let (compute, mut memory) = (Compute::single(), PolicyMemory::default());
+    let observation = vec![0.1; policy.observation().len()];
+    let mut action = vec![0.0; policy.action().len()];
+    let begun = Instant::now();
+    for _ in 0..CALLS {
+        policy.act(&compute, &observation, ActionMode::Deterministic, &mut memory, &mut action)?;
+    }
+    Ok(begun.elapsed().as_secs_f64() / f64::from(CALLS))
 }
 
 /// Figures of an evaluation.

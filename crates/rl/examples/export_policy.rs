@@ -34,6 +34,17 @@ fn main() -> Result<()> {
     (0..40).try_for_each(|_| sac.iterate(&mut *pendulums, 10_000).map(drop))?;
     export(&folder, "sac_pendulum", sac.policy())?;
 
+    let choices = EnvironmentSpec::new(
+        "choices",
+        Space::symmetric(&[1.0; 4 * 3 + 2]),
+        Space::Discrete { n: 4, start: 1 },
+    );
+    let mut policy =
+        Policy::new(&choices, Head::stochastic(&choices.action)?, &NetworkConfig::default(), None)?;
+    policy.score_choices(3)?;
+    policy.initialise(ParameterInit::Orthogonal(1.0), 0.0, &mut Random::new(5));
+    export(&folder, "choices", &policy)?;
+
     let parts =
         [("depth", Space::uniform(0.0, 15.0, &[64, 64, 1])?), ("target", Space::symmetric(&[5.0; 3]))];
     let observation = Space::Dict(parts.map(|(name, part)| (name.to_owned(), part)).into());

@@ -1,12 +1,14 @@
 //! Export of policies to ONNX.
 
+use std::ops::Range;
+
 use opendr_engine::{Error, Result};
 use opendr_kernels::{Activation, Gru, Layer, Network};
 use opendr_onnx::{
     Array, Builder, Data, ElementType, GraphTensor, Operator, bytes_from_model, model_from_graph,
 };
 
-use crate::policy::{Bounds, EPSILON, Head, ObservationNormaliser, Part, PartKind, Policy};
+use crate::policy::{Bounds, Choices, EPSILON, Head, ObservationNormaliser, PartKind, Policy};
 
 /// Returns the bytes of an ONNX model of a policy's most likely actions, with pre- and post-processing: normalisation of
 /// observations, scaling of images to [0, 1], argmax, bounds of actions.
@@ -34,7 +36,11 @@ pub fn onnx_from_policy(policy: &Policy) -> Result<Vec<u8>> {
         None => features,
         Some(gru) => graph.recurrent_unit(gru, of_gru, &features)?,
     };
-    let outputs = graph.network(policy.trunk.network(), of_network, features)?;
+    let network = policy.trunk.network();
+    let outputs = match policy.trunk.choices() {
+        None => graph.network(network, of_network, features)?,
+        Some(choices) => graph.scores(choices, network, of_network, &features)?,
+    };
     graph.builder.output("network", &outputs, "the raw output of the network", &["batch", ""])?;
     let action = graph.action(&policy.head, &outputs)?;
     graph.builder.output("action", &action, "the most likely action", &["batch", ""])?;
@@ -57,7 +63,7 @@ impl Graph {
         for (part, (_, network)) in encoder.parts().iter().zip(policy.extractor.parts()) {
             let raw = match encoder.parts() {
                 [_] => observation.clone(),
-                _ => self.slice(observation, part)?,
+                _ => self.slice(observation, part.raw.clone())?,
             };
             let encoded = match (&part.kind, &encoder.normaliser) {
                 (PartKind::Numbers, None) => raw,
@@ -93,10 +99,30 @@ impl Graph {
         }
     }
 
-    fn slice(&mut self, observation: &GraphTensor, part: &Part) -> Result<GraphTensor> {
-        let ends = [part.raw.start as i64, part.raw.end as i64].map(|end| GraphTensor::ints([end]));
-        let inputs = [observation, &ends[0], &ends[1], &GraphTensor::ints([1])];
-        self.add(Operator::new("Slice"), &inputs, part.raw.len())
+    fn slice(&mut self, of: &GraphTensor, columns: Range<usize>) -> Result<GraphTensor> {
+        let ends = [columns.start as i64, columns.end as i64].map(|end| GraphTensor::ints([end]));
+        self.add(Operator::new("Slice"), &[of, &ends[0], &ends[1], &GraphTensor::ints([1])], columns.len())
+    }
+
+    /// Adds a network that scores each choice by its own features and the common ones.
+    fn scores(
+        &mut self,
+        Choices { count, own }: Choices,
+        network: &Network,
+        parameters: &[f32],
+        features: &GraphTensor,
+    ) -> Result<GraphTensor> {
+        let (common, mut scores) = (network.inputs() - own, Vec::new());
+        for choice in 0..count {
+            let mut row = self.slice(features, choice * own..(choice + 1) * own)?;
+            if common > 0 {
+                let common = self.slice(features, count * own..count * own + common)?;
+                row = self.add(Operator::new("Concat").int("axis", 1), &[&row, &common], network.inputs())?;
+            }
+            scores.push(self.network(network, parameters, row)?);
+        }
+        let scores: Vec<_> = scores.iter().collect();
+        self.add(Operator::new("Concat").int("axis", 1), &scores, count)
     }
 
     fn normalised(

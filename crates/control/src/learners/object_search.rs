@@ -5,7 +5,13 @@ use opendr_engine::learner::Spec;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Task};
 use opendr_kernels::Compute;
-use opendr_rl::{Method, Policy, Ppo, PpoConfig, PpoFitParams, PpoMethod, RlTrainingParams};
+use opendr_rl::prior::{DemonstratedSteps, MakeEnvironment, begin_as_clone};
+use opendr_rl::{
+    Algorithm as _, BehaviourCloningConfig, Method, Policy, Ppo, PpoConfig, PpoFitParams, PpoMethod,
+    RlTrainingParams, Schedule,
+};
+use opendr_simulation::RegisteredEnvironment as _;
+use opendr_simulation::object_search::{FrontierSearch, ObjectsNearer};
 
 /// Training parameters of multi-object search.
 #[derive(Debug, Clone, PartialEq, Params)]
@@ -13,18 +19,21 @@ pub struct MultiObjectSearchRlFitParams {
     /// Settings of PPO.
     #[param(
         flatten,
-        n_steps = 128,
-        batch_size = 256,
+        learning_rate = 1e-3,
+        learning_rate_schedule = Schedule::Linear,
+        n_steps = 256,
+        batch_size = 512,
         n_epochs = 4,
-        gamma = 0.99,
-        ent_coef = 0.005,
-        norm_obs = true
+        gae_lambda = 0.9
     )]
     pub config: PpoConfig,
+    /// Episodes of frontier exploration that prefers seen objects, from which the policy is cloned before the training; 0 begins without.
+    #[param(default = 60, range = 0..=1_000_000)]
+    pub demonstration_episodes: u64,
     /// Settings of any training in environments.
     #[param(
         flatten,
-        total_timesteps = 300_000,
+        total_timesteps = 100_000,
         n_envs = 16,
         num_workers = 2,
         eval_freq = 0,
@@ -32,6 +41,11 @@ pub struct MultiObjectSearchRlFitParams {
     )]
     pub training: RlTrainingParams,
 }
+
+/// Seed of the first demonstrated episode, far from those of trainings and evaluations.
+const FIRST_SEED: u64 = 1 << 42;
+/// Weight of the entropy while the policy is cloned: it still tries what is about as near.
+const CLONED_ENTROPY: f32 = 0.1;
 
 /// PPO in `ObjectSearch2D-frontier-v1`, whose actions choose among the frontiers of the map. It also trains in
 /// `ObjectSearch2D-v1`, whose actions are OpenDR's speed and turn rate.
@@ -53,6 +67,23 @@ impl Method for MultiObjectSearchRlMethod {
         &params.training
     }
 
+    fn prepare(
+        params: &MultiObjectSearchRlFitParams,
+        algorithm: &mut Ppo,
+        from_base: bool,
+        make: MakeEnvironment<'_>,
+    ) -> Result<()> {
+        let mut environment = make()?;
+        if from_base || environment.spec().id != FrontierSearch::ID || params.demonstration_episodes == 0 {
+            return Ok(());
+        }
+        let seeds = FIRST_SEED..FIRST_SEED + params.demonstration_episodes;
+        let steps = DemonstratedSteps::record(&mut ObjectsNearer, &mut *environment, seeds)?;
+        let config =
+            BehaviourCloningConfig { ent_weight: CLONED_ENTROPY, ..BehaviourCloningConfig::default() };
+        begin_as_clone(algorithm, &steps, &config, &Compute::single()).map(drop)
+    }
+
     fn algorithm(
         params: &MultiObjectSearchRlFitParams,
         spec: &EnvironmentSpec,
@@ -60,6 +91,17 @@ impl Method for MultiObjectSearchRlMethod {
         base: Option<&Policy>,
     ) -> Result<Ppo> {
         let params = PpoFitParams { config: params.config.clone(), ..PpoFitParams::default() };
-        PpoMethod::algorithm(&params, spec, compute, base)
+        if spec.id != FrontierSearch::ID {
+            return PpoMethod::algorithm(&params, spec, compute, base);
+        }
+        let mut config = params.config;
+        if let Some(base) = base {
+            config.network = base.network().clone();
+            config.norm_obs = base.encoder().normaliser.is_some();
+        }
+        let ppo = Ppo::new(&config, spec)?.with_compute(compute);
+        let mut ppo = ppo.scoring_choices(FrontierSearch::FEATURES)?;
+        base.map_or(Ok(()), |base| ppo.set_policy(base))?;
+        Ok(ppo)
     }
 }

@@ -7,7 +7,7 @@ use opendr_engine::Device;
 use opendr_engine::environment::{Environment as _, ResetOptions};
 use opendr_engine::learner::{FitJob, Handle, Learner, LearnerRl};
 use opendr_engine::model::Model;
-use opendr_rl::{POLICY_FILE, observation_from_numbers};
+use opendr_rl::{POLICY_FILE, Policy, observation_from_numbers, onnx_from_policy};
 use opendr_simulation::{RegisteredSource, make};
 
 /// Trains with this number of threads; returns the policy and an action.
@@ -54,7 +54,10 @@ fn object_search_trains() {
     let mut params = MultiObjectSearchRlFitParams::default();
     (params.config.n_steps, params.config.batch_size) = (16, 32);
     (params.training.total_timesteps, params.training.n_envs) = (64, 2);
-    params.training.n_eval_episodes = 1;
-    let (_, action) = trained::<MultiObjectSearchRl>("ObjectSearch2D-frontier-v1", &params, "search");
+    (params.training.n_eval_episodes, params.demonstration_episodes) = (1, 2);
+    let (policy, action) = trained::<MultiObjectSearchRl>("ObjectSearch2D-frontier-v1", &params, "search");
     assert_eq!(action.len(), 1);
+    let policy = Policy::from_bytes(&policy).unwrap();
+    assert!(Policy::from_bytes(&policy.to_bytes().unwrap()).unwrap() == policy);
+    assert!(onnx_from_policy(&policy).is_ok());
 }

@@ -24,6 +24,9 @@ struct Record {
     /// Clipping bound of normalised observations; none if they are not normalised.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     clip_obs: Option<f32>,
+    /// Features of each choice; none if the network does not score choices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    choice_features: Option<usize>,
 }
 
 #[derive(Serialize, Deserialize, Clone, Copy)]
@@ -56,6 +59,7 @@ impl Policy {
             head: HeadKind::of(&self.head),
             network: self.config.to_map(),
             clip_obs: normaliser.map(|normaliser| normaliser.clip),
+            choice_features: self.trunk.choices().map(|choices| choices.own),
         };
         let unwritable = |error| Error::internal("the policy cannot be written as JSON").with_source(error);
         let mut file = TensorFile::default();
@@ -121,6 +125,7 @@ fn read(bytes: &[u8]) -> Result<Policy> {
     let head = record.head.of_space(&action)?;
     let spec = EnvironmentSpec::new("policy", observation, action);
     let mut policy = Policy::new(&spec, head, &config, record.clip_obs)?;
+    record.choice_features.map_or(Ok(()), |features| policy.score_choices(features))?;
     let parameters = file.f32(PARAMETERS)?;
     if parameters.len() != policy.parameters.len() {
         return Err(Error::format(format!(

@@ -23,12 +23,12 @@ pub use head::{Bounds, Head};
 pub(crate) use likelihood::Likelihood;
 pub use network_config::{ActivationFn, ImageNetwork, NetworkConfig, ParameterInit};
 pub use observation_encoder::ObservationEncoder;
-pub(crate) use observation_encoder::{Part, PartKind, check_finite};
+pub(crate) use observation_encoder::{PartKind, check_finite};
 pub(crate) use observation_normaliser::EPSILON;
 pub use observation_normaliser::ObservationNormaliser;
 pub use space_record::SpaceRecord;
 pub use tensor_file::TensorFile;
-pub(crate) use trunk::{Sequences, Trunk, TrunkMemory};
+pub(crate) use trunk::{Choices, Sequences, Trunk, TrunkMemory};
 
 /// A policy: spaces, networks, action head and parameters.
 ///
@@ -86,6 +86,37 @@ impl Policy {
         Ok(Self { action, config, encoder, extractor, trunk, head, parameters })
     }
 
+    /// Lets one network score all choices of a discrete action, each by its own `features` numbers of the observation and by those that
+    /// follow the numbers of all choices. All parameters become 0.
+    ///
+    /// # Errors
+    /// `Unsupported` for other actions, policies with memory and observations with images; `InvalidInput` for observations with fewer
+    /// numbers than those of the choices.
+    pub fn score_choices(&mut self, features: usize) -> Result<()> {
+        self.config.check_no_memory("a network that scores choices")?;
+        let (Head::Categorical { counts, .. }, true) = (&self.head, self.extractor.is_identity()) else {
+            return Err(Error::unsupported(format!(
+                "a network scores choices by numbers; the actions are {}, the observations {}",
+                self.action,
+                self.observation()
+            )));
+        };
+        let ([count], inputs) = (&counts[..], self.extractor.outputs()) else {
+            return Err(Error::unsupported(format!("a network scores one choice, not {}", self.action)));
+        };
+        let choices = Choices { count: *count as usize, own: features };
+        let common =
+            inputs.checked_sub(choices.count * features).filter(|_| features > 0).ok_or_else(|| {
+                Error::invalid_input(format!(
+                    "{features} numbers for each of {} choices, but the observation has {inputs}",
+                    choices.count
+                ))
+            })?;
+        self.trunk = Trunk::scoring(choices, self.config.network(features + common, 1)?);
+        self.parameters = vec![0.0; self.trunk.parameters()];
+        Ok(())
+    }
+
     /// Initialises the parameters; log standard deviations start at `log_std`.
     pub fn initialise(&mut self, beginning: ParameterInit, log_std: f32, random: &mut Random) {
         let (extractor, rest) = self.parameters.split_at_mut(self.extractor.parameters());
@@ -129,6 +160,11 @@ impl Policy {
         &self.head
     }
 
+    /// Returns the settings of the networks.
+    pub fn network(&self) -> &NetworkConfig {
+        &self.config
+    }
+
     /// Returns the encoder of observations, with the normaliser.
     pub fn encoder(&self) -> &ObservationEncoder {
         &self.encoder
@@ -166,6 +202,7 @@ impl Policy {
     pub(crate) fn is_compatible(&self, other: &Self) -> bool {
         (self.observation(), &self.action, &self.head, &self.config)
             == (other.observation(), &other.action, &other.head, &other.config)
+            && self.trunk == other.trunk
             && self.encoder.normaliser.is_some() == other.encoder.normaliser.is_some()
     }
 

@@ -1,4 +1,4 @@
-//! The network on the features of a policy or critic: an optional recurrent unit, and hidden layers.
+//! The network on the features of a policy or critic: an optional recurrent unit, and hidden layers; or one that scores choices.
 
 use opendr_engine::Random;
 use opendr_kernels::{Compute, Gru, GruTape, Initialisation, Network, Tape};
@@ -8,6 +8,31 @@ use opendr_kernels::{Compute, Gru, GruTape, Initialisation, Network, Tape};
 pub(crate) struct Trunk {
     gru: Option<Gru>,
     network: Network,
+    choices: Option<Choices>,
+}
+
+/// Choices that the same network scores one by one, each by its own features and those that follow the features of all choices. The
+/// scores do not depend on the order of the choices.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Choices {
+    /// Number of choices.
+    pub count: usize,
+    /// Features of each.
+    pub own: usize,
+}
+
+impl Choices {
+    /// Writes a row for each choice of each row of `width` features.
+    fn rows(self, features: &[f32], width: usize, rows: &mut Vec<f32>) {
+        rows.clear();
+        for features in features.chunks_exact(width) {
+            let (own, common) = features.split_at(self.count * self.own);
+            for own in own.chunks_exact(self.own) {
+                rows.extend_from_slice(own);
+                rows.extend_from_slice(common);
+            }
+        }
+    }
 }
 
 /// Sequences of rows, `[steps, sequences]`; ignored without a recurrent unit.
@@ -27,11 +52,23 @@ pub(crate) struct TrunkMemory {
     /// All false: no row starts an episode.
     no_starts: Vec<bool>,
     dfeatures: Vec<f32>,
+    /// Rows of choices.
+    rows: Vec<f32>,
 }
 
 impl Trunk {
     pub fn new(gru: Option<Gru>, network: Network) -> Self {
-        Self { gru, network }
+        Self { gru, network, choices: None }
+    }
+
+    /// Creates a trunk whose network scores choices.
+    pub fn scoring(choices: Choices, network: Network) -> Self {
+        Self { gru: None, network, choices: Some(choices) }
+    }
+
+    /// Returns the choices that the network scores; none for a network on all features.
+    pub fn choices(&self) -> Option<Choices> {
+        self.choices
     }
 
     pub fn gru(&self) -> Option<&Gru> {
@@ -74,12 +111,19 @@ impl Trunk {
         memory: &'m mut TrunkMemory,
     ) -> &'m [f32] {
         let (of_gru, of_network) = parameters.split_at(self.recurrent_parameters());
-        let TrunkMemory { tape, gru: gru_tape, .. } = memory;
+        let TrunkMemory { tape, gru: gru_tape, rows, .. } = memory;
         let features = match &self.gru {
-            None => features,
+            None => self.inputs(features, rows),
             Some(gru) => gru.forward(compute, of_gru, features, sequences.states, sequences.starts, gru_tape),
         };
         self.network.forward(compute, of_network, features, tape)
+    }
+
+    /// Returns what the network reads of features: them, or rows of choices.
+    fn inputs<'f>(&self, features: &'f [f32], rows: &'f mut Vec<f32>) -> &'f [f32] {
+        let Some(choices) = self.choices else { return features };
+        choices.rows(features, self.network.inputs() + (choices.count - 1) * choices.own, rows);
+        rows
     }
 
     /// Computes one step of every row and updates `states`.
@@ -92,9 +136,9 @@ impl Trunk {
         memory: &'m mut TrunkMemory,
     ) -> &'m [f32] {
         let (of_gru, of_network) = parameters.split_at(self.recurrent_parameters());
-        let TrunkMemory { tape, gru: gru_tape, no_starts, .. } = memory;
+        let TrunkMemory { tape, gru: gru_tape, no_starts, rows, .. } = memory;
         let Some(gru) = &self.gru else {
-            return self.network.forward(compute, of_network, features, tape);
+            return self.network.forward(compute, of_network, self.inputs(features, rows), tape);
         };
         no_starts.resize(states.len() / gru.size(), false);
         let after = gru.forward(compute, of_gru, features, states, no_starts, gru_tape);
@@ -103,7 +147,7 @@ impl Trunk {
     }
 
     /// Adds to `gradients`, from the gradient of the outputs of the last [`Self::forward`]. Returns that of the features if
-    /// `wants_input`, else an empty slice.
+    /// `wants_input`, which must be false where choices are scored, else an empty slice.
     #[expect(clippy::too_many_arguments, reason = "inputs and outputs of a backward pass")]
     pub fn backward<'m>(
         &self,
@@ -208,6 +252,46 @@ mod tests {
                 }
             }
             assert_eq!(trunk.step(&compute, &parameters, features, &mut states, &mut memory), wanted);
+        }
+    }
+
+    /// Scores follow their choices into any order, and their gradients are differences.
+    #[test]
+    fn choices_are_scored_one_by_one() {
+        let choices = Choices { count: 3, own: 2 };
+        let config = NetworkConfig { net_arch: vec![5], ..NetworkConfig::default() };
+        let (trunk, mut random) = (Trunk::scoring(choices, config.network(3, 1).unwrap()), Random::new(3));
+        let mut parameters = vec![0.0; trunk.parameters()];
+        trunk.initialise(Initialisation::Uniform, &mut random, &mut parameters);
+        let (compute, mut memory) = (Compute::single(), TrunkMemory::default());
+        let features: Vec<f32> = (0..2 * 7).map(|_| random.uniform(-1.0, 1.0)).collect();
+        let mut scores = |parameters: &[f32], features: &[f32]| {
+            trunk.forward(&compute, parameters, features, Sequences::default(), &mut memory).to_vec()
+        };
+        let first = scores(&parameters, &features);
+        let mut turned = features.clone();
+        turned.chunks_exact_mut(7).for_each(|row| row[..6].rotate_left(2));
+        let mut wanted = first.clone();
+        wanted.chunks_exact_mut(3).for_each(|scores| scores.rotate_left(1));
+        assert_eq!(scores(&parameters, &turned), wanted);
+        let weights = [1.0, -0.5, 0.25, 2.0, 0.0, -1.0];
+        let mut loss = |at: usize, by: f32| {
+            let mut parameters = parameters.clone();
+            parameters[at] += by;
+            scores(&parameters, &features)
+                .iter()
+                .zip(weights)
+                .map(|(score, weight)| score * weight)
+                .sum::<f32>()
+        };
+        let step = 1.0 / 128.0;
+        let differences: Vec<_> =
+            (0..parameters.len()).map(|at| (loss(at, step) - loss(at, -step)) / (2.0 * step)).collect();
+        scores(&parameters, &features);
+        let mut gradients = vec![0.0; parameters.len()];
+        trunk.backward(&compute, &parameters, &weights, &[], &mut memory, &mut gradients, false);
+        for (at, (got, wanted)) in gradients.iter().zip(differences).enumerate() {
+            assert!((got - wanted).abs() < 2e-3, "{at}: {got} {wanted}");
         }
     }
 }

@@ -79,6 +79,12 @@ struct Memory {
 
 /// Epsilon of Adam in Stable-Baselines3's on-policy algorithms.
 const EPSILON: f32 = 1e-5;
+/// Gain of the policy's output layer: all actions are about as likely at the beginning.
+const OUTPUT_GAIN: f32 = 0.01;
+
+fn beginning(config: &PpoConfig, output: f32) -> ParameterInit {
+    if config.ortho_init { ParameterInit::Orthogonal(output) } else { ParameterInit::Uniform }
+}
 
 impl Ppo {
     /// Creates an algorithm for environments with this specification, on one thread.
@@ -95,12 +101,9 @@ impl Ppo {
         let of_values = crate::policy::NetworkConfig { net_arch: of_values, ..config.network.clone() };
         let critic = of_values.trunk(policy.extractor.outputs(), 1)?;
         let mut random = Random::from_key([config.seed, 0]);
-        let beginning = |output| {
-            if config.ortho_init { ParameterInit::Orthogonal(output) } else { ParameterInit::Uniform }
-        };
-        policy.initialise(beginning(0.01), config.log_std_init, &mut random);
+        policy.initialise(beginning(config, OUTPUT_GAIN), config.log_std_init, &mut random);
         let mut critic_parameters = vec![0.0; critic.parameters()];
-        critic.initialise(beginning(1.0).of_output(), &mut random, &mut critic_parameters);
+        critic.initialise(beginning(config, 1.0).of_output(), &mut random, &mut critic_parameters);
         let options = AdamOptions { epsilon: EPSILON, ..AdamOptions::default() };
         Ok(Self {
             config: config.clone(),
@@ -119,6 +122,19 @@ impl Ppo {
             updates: 0,
             report: Report::default(),
         })
+    }
+
+    /// Lets one network score all choices, as [`Policy::score_choices`] does. Call it before the policy is set.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn scoring_choices(mut self, features: usize) -> Result<Self> {
+        self.policy.score_choices(features)?;
+        let Self { policy, config, random, .. } = &mut self;
+        policy.initialise(beginning(config, OUTPUT_GAIN), config.log_std_init, random);
+        let options = AdamOptions { epsilon: EPSILON, ..AdamOptions::default() };
+        self.actor_adam = Adam::new(policy.parameters.len(), options);
+        Ok(self)
     }
 
     /// Uses the threads of `compute`; results do not depend on their number.

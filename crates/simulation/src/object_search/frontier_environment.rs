@@ -21,10 +21,10 @@ use crate::sine_cosine::sine_cosine;
 /// `ObjectSearch2D-frontier-v1`: the search of `ObjectSearch2D-v1`, whose actions choose a frontier of the map or a seen object.
 ///
 /// Candidates are ordered by the length of the way; the robot drives to the chosen one on the shortest known way, until it is
-/// resolved or an object is seen or found. Of a number above the last candidate the last one is chosen. An observation has nine
+/// resolved or an object is seen or found. Of a number above the last candidate the last one is chosen. An observation has ten
 /// numbers for each of eight candidates: whether it exists, is an object, length of the way / 5 m, bearing (cosine, sine), size of
-/// the frontier / 20 cells, share of unknown cells within 1.2 m, distance / 5 m from the last choice and from the nearest other
-/// candidate; then shares of objects found and seen, of the flat known, of the 3500 steps used, and of eight candidates. The
+/// the frontier / 20 cells, shares of unknown cells within 1.2 and 2.5 m, distance / 5 m from the last choice and from the nearest
+/// other candidate; then shares of objects found and seen, of the flat known, of the 3500 steps used, and of eight candidates. The
 /// reward is 1 for each object found, less 0.1 for each metre. Episodes end as there, or where nothing is left to explore.
 #[derive(Debug, Clone)]
 pub struct FrontierSearch {
@@ -37,9 +37,8 @@ pub struct FrontierSearch {
     path: Vec<[f64; 2]>,
 }
 
-/// Candidates of an observation, numbers of each, and further numbers.
+/// Candidates of an observation, and further numbers.
 const CANDIDATES: usize = 8;
-const FEATURES: usize = 9;
 const FURTHER: usize = 5;
 /// Steps after which another choice is made.
 const LONGEST_DRIVE: u32 = 150;
@@ -67,13 +66,39 @@ impl Controller for NearestFrontier {
     }
 }
 
+/// Drives to the nearest frontier or seen object, of which objects count as one metre nearer than they are.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ObjectsNearer;
+
+impl Controller for ObjectsNearer {
+    fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        let candidates = observation.chunks_exact(FrontierSearch::FEATURES).take(CANDIDATES);
+        // The first three numbers: whether there is a candidate, whether it is an object, length of the way / 5 m.
+        let ways = candidates.enumerate().filter_map(|(at, numbers)| match numbers {
+            [exists, object, length, ..] if *exists > 0.0 => Some((at, 5.0 * length - object)),
+            _ => None,
+        });
+        let nearest = ways.min_by(|(_, one), (_, other)| one.total_cmp(other));
+        action.fill(nearest.map_or(0.0, |(at, _)| at as f32));
+        Ok(())
+    }
+
+    fn save_state(&self, _: &mut Snapshot) -> Result<()> {
+        Ok(())
+    }
+
+    fn load_state(&mut self, _: &mut StateReader<'_>) -> Result<()> {
+        Ok(())
+    }
+}
+
 impl RegisteredEnvironment for FrontierSearch {
     const ID: &'static str = "ObjectSearch2D-frontier-v1";
     type Params = ObjectSearchParams;
 
     fn new(params: &ObjectSearchParams) -> Result<Self> {
         params.check()?;
-        let numbers = [f32::INFINITY; CANDIDATES * FEATURES + FURTHER];
+        let numbers = [f32::INFINITY; CANDIDATES * Self::FEATURES + FURTHER];
         let spec =
             EnvironmentSpec::new(Self::ID, Space::symmetric(&numbers), Space::discrete(CANDIDATES as u32))
                 .with_max_episode_steps(LIMIT)
@@ -91,6 +116,9 @@ impl RegisteredEnvironment for FrontierSearch {
 }
 
 impl FrontierSearch {
+    /// Numbers of each candidate in an observation.
+    pub const FEATURES: usize = 10;
+
     fn find(&mut self) -> Result<()> {
         let episode = self.episode.as_ref().ok_or_else(|| not_begun(&self.spec))?;
         self.frontiers.find(episode);
@@ -102,11 +130,13 @@ impl FrontierSearch {
         observation.fill(0.0);
         let [x, y, yaw] = episode.pose;
         let candidates = &self.frontiers.candidates;
-        for (seen, candidate) in observation.chunks_exact_mut(FEATURES).zip(candidates).take(CANDIDATES) {
+        for (seen, candidate) in observation.chunks_exact_mut(Self::FEATURES).zip(candidates).take(CANDIDATES)
+        {
             let place = middle(candidate.look);
             let (sine, cosine) = sine_cosine(arctangent2(place[1] - y, place[0] - x) - yaw);
             let others = candidates.iter().filter(|other| other.look != candidate.look);
             let isolation = others.map(|other| distance(middle(other.look), place)).fold(10.0, f64::min);
+            let [near, far] = candidate.unknown;
             let numbers = [
                 1.0,
                 f64::from(u8::from(candidate.object.is_some())),
@@ -114,7 +144,8 @@ impl FrontierSearch {
                 cosine,
                 sine,
                 candidate.size as f64 / 20.0,
-                candidate.unknown,
+                near,
+                far,
                 distance(self.last, place) / 5.0,
                 isolation / 5.0,
             ];
@@ -131,7 +162,7 @@ impl FrontierSearch {
             f64::from(episode.steps) / f64::from(LIMIT),
             candidates.len() as f64 / CANDIDATES as f64,
         ];
-        for (seen, number) in observation.iter_mut().skip(CANDIDATES * FEATURES).zip(further) {
+        for (seen, number) in observation.iter_mut().skip(CANDIDATES * Self::FEATURES).zip(further) {
             *seen = number as f32;
         }
         Ok(())

@@ -19,8 +19,8 @@ pub(super) struct Candidate {
     pub length: f64,
     /// Cells of the frontier.
     pub size: usize,
-    /// Share of unknown cells around the place.
-    pub unknown: f64,
+    /// Shares of unknown cells around the place, near it and farther.
+    pub unknown: [f64; 2],
 }
 
 /// Candidates of a map, by the length of the way.
@@ -39,8 +39,8 @@ const SMALLEST: usize = 3;
 /// From how far a frontier and an object are approached, in cells.
 const REACH: f64 = 4.0;
 const OBJECT_REACH: f64 = 9.0;
-/// Radius around a place in which unknown cells are counted, in cells.
-const AROUND: f64 = 12.0;
+/// Radii around a place in which unknown cells are counted, in cells.
+const AROUND: [f64; 2] = [12.0, 25.0];
 /// Radius around a place that is given up, in cells.
 const GIVEN_UP: f64 = 5.0;
 
@@ -95,7 +95,7 @@ impl Frontiers {
                 object: Some(object),
                 length,
                 size: 0,
-                unknown: 0.0,
+                unknown: AROUND.map(|radius| unknown_share(map, look, radius)),
             });
         }
         self.taken.fill(false);
@@ -142,12 +142,7 @@ impl Frontiers {
             *self.cluster.iter().min_by(|one, other| from_centre(one).total_cmp(&from_centre(other)))?;
         let ways = self.cluster.iter().filter_map(|cell| self.nearest(&episode.map, *cell, REACH));
         let (target, length) = ways.min_by(|one, other| one.1.total_cmp(&other.1))?;
-        let (mut unknown, mut all) = (0, 0);
-        disc(look, AROUND, |cell| {
-            all += 1;
-            unknown += usize::from(episode.map.cell(cell) == Cell::Unknown);
-        });
-        let unknown = f64::from(unknown as u32) / f64::from((all as u32).max(1));
+        let unknown = AROUND.map(|radius| unknown_share(&episode.map, look, radius));
         Some(Candidate { target, look, object: None, length, size, unknown })
     }
 
@@ -164,4 +159,14 @@ impl Frontiers {
         });
         best
     }
+}
+
+/// Returns the share of unknown cells within `radius` cells of a cell.
+fn unknown_share(map: &KnownMap, centre: usize, radius: f64) -> f64 {
+    let (mut unknown, mut all) = (0_u32, 0_u32);
+    disc(centre, radius, |cell| {
+        all += 1;
+        unknown += u32::from(map.cell(cell) == Cell::Unknown);
+    });
+    f64::from(unknown) / f64::from(all.max(1))
 }

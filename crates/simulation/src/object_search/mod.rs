@@ -23,7 +23,7 @@ mod view;
 
 pub use environment::ObjectSearch;
 pub use floor_plan::FloorPlan;
-pub use frontier_environment::{FrontierSearch, NearestFrontier};
+pub use frontier_environment::{FrontierSearch, NearestFrontier, ObjectsNearer};
 pub use known_map::{Cell, KnownMap};
 pub use options::ObjectSearchParams;
 

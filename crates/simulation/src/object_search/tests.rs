@@ -45,12 +45,12 @@ fn the_camera_sees_no_farther_than_walls() {
 }
 
 /// Success rate and mean success weighted by path length of frontier exploration.
-fn explored(episodes: u64) -> (f64, f64) {
+fn explored(seeds: &[u64]) -> (f64, f64) {
     let mut flat = make("ObjectSearch2D-frontier-v1").unwrap();
     let mut seen = vec![0.0; flat.spec().observation.len()];
     let (mut successes, mut weighted) = (0.0, 0.0);
-    for seed in 0..episodes {
-        flat.reset(Some(seed), &ResetOptions::new(), &mut seen).unwrap();
+    for seed in seeds {
+        flat.reset(Some(*seed), &ResetOptions::new(), &mut seen).unwrap();
         let mut action = [0.0];
         loop {
             NearestFrontier.act(&seen, &mut action).unwrap();
@@ -62,14 +62,20 @@ fn explored(episodes: u64) -> (f64, f64) {
             }
         }
     }
-    (successes / episodes as f64, weighted / episodes as f64)
+    (successes / seeds.len() as f64, weighted / seeds.len() as f64)
 }
 
 #[test]
 fn frontier_exploration_finds_the_objects() {
-    let (success, weighted) = explored(60);
+    let (success, weighted) = explored(&(0..60).collect::<Vec<_>>());
     println!("success {success:.3}, weighted by path length {weighted:.3}");
-    assert!(success > 0.9 && weighted > 0.3 && weighted < success, "{success} {weighted}");
+    assert!(success > 0.95 && weighted > 0.6 && weighted < success, "{success} {weighted}");
+}
+
+/// Here what the robot drives to is hidden from beside the place from which it can be seen.
+#[test]
+fn the_robot_drives_to_where_it_can_see() {
+    assert_eq!(explored(&[1_000_018, 1_000_020, 1_000_057]).0, 1.0);
 }
 
 /// Runs an episode and returns all observations and rewards.
@@ -117,7 +123,7 @@ fn golden_trajectories_are_the_same_on_every_machine() {
         flat.reset(Some(42), &ResetOptions::new(), &mut seen).unwrap();
         run(&mut *flat, &mut seen, 100).iter().for_each(|bits| hash.update(&bits.to_le_bytes()));
     }
-    assert_eq!(hash.finish().to_string(), "TODO");
+    assert_eq!(hash.finish().to_string(), "a6609a6e6a75f121465ffbe17c3f8c570d1d0d974682d0dc9b0a7f655478327e");
 }
 
 #[test]
