@@ -1,5 +1,6 @@
 //! Branches and bodies of loops: graphs within nodes.
 
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -54,8 +55,8 @@ pub(crate) fn take(
         let mut names = Vec::new();
         for name in graphs.iter().flat_map(|body| free_names(body, 0)) {
             if let Some(tensor) = initializers.get(name.as_str()) {
-                if !captured.contains_key(&name) {
-                    captured.insert(name, Arc::new(Constant::from_tensor(tensor)?));
+                if let Entry::Vacant(vacant) = captured.entry(name) {
+                    vacant.insert(Arc::new(Constant::from_tensor(tensor)?));
                 }
             } else if let Some(constant) = outer.get(&name) {
                 captured.insert(name, Arc::clone(constant));
