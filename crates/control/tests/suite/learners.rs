@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use opendr_control::{MobileRl, MobileRlFitParams, MultiObjectSearchRl, MultiObjectSearchRlFitParams};
 use opendr_engine::Device;
 use opendr_engine::environment::{Environment as _, ResetOptions};
-use opendr_engine::learner::{FitJob, Handle, Learner as _, LearnerRl};
+use opendr_engine::learner::{FitJob, Handle, LearnerRl};
 use opendr_engine::model::Model;
 use opendr_rl::{POLICY_FILE, Policy, observation_from_numbers, onnx_from_policy};
 use opendr_simulation::{RegisteredSource, make};
