@@ -1,5 +1,6 @@
 //! Tensors that planning knows, or that a run has computed for a later stage.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use opendr_engine::{Error, Result};
@@ -11,6 +12,9 @@ use crate::tensor::{Data, Kind, Tensor, count};
 
 /// Maximum number of bytes of the tensors of a run.
 pub(crate) const MAX_BYTES: usize = 1 << 32;
+
+/// Tensors by name.
+pub(crate) type Constants = HashMap<String, Arc<Constant>>;
 
 /// A tensor of its own memory.
 #[derive(Debug)]
