@@ -55,7 +55,8 @@ fn equations_give_what_numpy_gives() {
                 .map(|(name, shape)| floats(name, &dims(shape), &numbers(shape)))
                 .collect();
             let output = [value("y", F32, &dims(shape))];
-            let mut executor = open(graph(&[einsum.clone()], &inputs, &output, &constants)).unwrap();
+            let mut executor =
+                open(graph(std::slice::from_ref(&einsum), &inputs, &output, &constants)).unwrap();
             let data: Vec<Vec<f32>> = shapes.iter().map(|shape| numbers(shape)).collect();
             let inputs: Vec<(&[usize], Data<'_>)> = shapes
                 .iter()
