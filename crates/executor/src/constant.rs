@@ -1,5 +1,6 @@
 //! Tensors that planning knows, or that a run has computed for a later stage.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use opendr_engine::{Error, Result};
@@ -11,6 +12,9 @@ use crate::tensor::{Data, Kind, Tensor, count};
 
 /// Maximum number of bytes of the tensors of a run.
 pub(crate) const MAX_BYTES: usize = 1 << 32;
+
+/// Tensors by name.
+pub(crate) type Constants = HashMap<String, Arc<Constant>>;
 
 /// A tensor of its own memory.
 #[derive(Debug)]
@@ -77,16 +81,22 @@ impl Constant {
         Ok(Self { kind, shape, data: Arena::new(bytes), varies: false })
     }
 
-    /// Copies a tensor.
+    /// Copies a tensor of a run.
     pub(crate) fn copied(tensor: &Tensor<'_>) -> Self {
         let (kind, shape) = (tensor.data.kind(), tensor.shape.to_vec());
-        match tensor.data {
+        let copy = match tensor.data {
             Data::F32(data) => Self::of(kind, shape, data),
             Data::I64(data) => Self::of(kind, shape, data),
             Data::I32(data) => Self::of(kind, shape, data),
             Data::U8(data) | Data::Bool(data) => Self::of(kind, shape, data),
             Data::I8(data) => Self::of(kind, shape, data),
-        }
+        };
+        copy.of_run()
+    }
+
+    /// Returns the tensor as one that a run has computed: another run may compute another one.
+    pub(crate) fn of_run(self) -> Self {
+        Self { varies: true, ..self }
     }
 
     /// Returns the tensor; `None` for 16-bit floats.

@@ -88,8 +88,8 @@ impl<'a> Loop<'a> {
         let (mut iteration, mut bytes) = (0_i64, 0_usize);
         while self.condition && self.trips.is_none_or(|trips| iteration < trips) {
             let mut inputs = vec![
-                Arc::new(Constant::from_ints(Vec::new(), &[iteration])),
-                Arc::new(Constant::of(Kind::Bool, Vec::new(), &[u8::from(self.condition)])),
+                Arc::new(Constant::from_ints(Vec::new(), &[iteration]).of_run()),
+                Arc::new(Constant::of(Kind::Bool, Vec::new(), &[u8::from(self.condition)]).of_run()),
             ];
             inputs.append(&mut self.state);
             inputs.extend(self.captured.iter().cloned());
@@ -111,7 +111,7 @@ impl<'a> Loop<'a> {
         let declared = &self.graph.outputs[1 + states..];
         let mut results = self.state;
         for (scan, declared) in scans.iter().zip(declared) {
-            results.push(Arc::new(stacked(self.node, scan, declared)?));
+            results.push(Arc::new(stacked(self.node, scan, declared)?.of_run()));
         }
         Ok(results)
     }

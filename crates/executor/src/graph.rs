@@ -7,12 +7,9 @@ use opendr_engine::Result;
 use opendr_kernels::{ByteDepthwiseFilters, ByteFilters, DepthwiseFilters, Filters};
 use opendr_onnx::proto::NodeProto;
 
-use crate::constant::Constant;
+use crate::constant::Constants;
 use crate::order::ordered;
 use crate::tensor::Kind;
-
-/// Tensors by name.
-pub(crate) type Constants = HashMap<String, Arc<Constant>>;
 
 /// Packed weights, shared by all plans of a model.
 #[derive(Debug, Clone)]

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use opendr_engine::{Error, Result};
 use opendr_onnx::proto::NodeProto;
 
-use crate::graph::Constants;
+use crate::constant::Constants;
 
 /// Orders nodes so that each follows the producers of its inputs.
 pub(crate) fn ordered(

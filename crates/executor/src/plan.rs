@@ -146,11 +146,17 @@ impl Plan {
         inputs: &[Tensor<'_>],
         owned: &[Arc<Constant>],
     ) -> Option<Arc<Constant>> {
-        match &self.outputs.get(index)?.place {
-            Place::Constant(constant) => Some(Arc::clone(constant)),
-            Place::Input(at) if owned.get(*at).is_some() => owned.get(*at).cloned(),
-            _ => Some(Arc::new(Constant::copied(&self.output(index, arena, inputs)?))),
+        let output = self.outputs.get(index)?;
+        let same = match &output.place {
+            Place::Constant(constant) => Some(constant),
+            Place::Input(at) => owned.get(*at),
+            _ => None,
+        };
+        // The same elements may have another shape here.
+        if let Some(same) = same.filter(|same| same.shape == output.shape) {
+            return Some(Arc::clone(same));
         }
+        self.output(index, arena, inputs).map(|output| Arc::new(Constant::copied(&output)))
     }
 
     pub(crate) fn output_count(&self) -> usize {

@@ -7,9 +7,9 @@ use opendr_engine::{Error, Result};
 use opendr_onnx::passes;
 use opendr_onnx::proto::{GraphProto, ModelProto, NodeProto, TypeValue};
 
-use crate::constant::Constant;
+use crate::constant::{Constant, Constants};
 use crate::declared::{Declared, declared};
-use crate::graph::{Constants, Graph, Output, Parts};
+use crate::graph::{Graph, Output, Parts};
 use crate::ops;
 use crate::simplify::simplify;
 use crate::subgraphs::{self, MAX_DEPTH};

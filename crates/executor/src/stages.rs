@@ -163,7 +163,7 @@ impl Stages {
             node.input.iter().map(|name| values.get(name).cloned()).collect();
         if let Some(Operator::Host(host)) = ops::operator(&node.op_type) {
             let inputs: Vec<Option<&Constant>> = inputs.iter().map(Option::as_deref).collect();
-            return Ok(host(node, &inputs)?.into_iter().map(Arc::new).collect());
+            return Ok(host(node, &inputs)?.into_iter().map(|output| Arc::new(output.of_run())).collect());
         }
         let (key, graphs) = crate::subgraphs::bodies(graph, node)?;
         let mut bodies = self

@@ -8,8 +8,8 @@ use opendr_engine::{Error, Result};
 use opendr_onnx::proto::{AttributeProto, GraphProto, NodeProto, TensorProto, TypeValue};
 
 use crate::attributes::Attributes;
-use crate::constant::Constant;
-use crate::graph::{Constants, Graph};
+use crate::constant::{Constant, Constants};
+use crate::graph::Graph;
 
 /// Maximum nesting depth of graphs.
 pub(crate) const MAX_DEPTH: usize = 16;
@@ -55,8 +55,8 @@ pub(crate) fn take(
         let mut names = Vec::new();
         for name in graphs.iter().flat_map(|body| free_names(body, 0)) {
             if let Some(tensor) = initializers.get(name.as_str()) {
-                if let Entry::Vacant(vacant) = captured.entry(name) {
-                    vacant.insert(Arc::new(Constant::from_tensor(tensor)?));
+                if let Entry::Vacant(free) = captured.entry(name) {
+                    free.insert(Arc::new(Constant::from_tensor(tensor)?));
                 }
             } else if let Some(constant) = outer.get(&name) {
                 captured.insert(name, Arc::clone(constant));

@@ -54,7 +54,7 @@ fn products_equal_their_definition() {
     let signed: Vec<i8> = b.iter().map(|&byte| byte as i8).collect();
     let data =
         [(&[rows, depth][..], Data::U8(&a)), (&[], Data::U8(&[131])), (&[depth, columns], Data::I8(&signed))];
-    let constant = graph(&[product.clone()], &inputs[..2], &output, &[weights, zeros.clone()]);
+    let constant = graph(std::slice::from_ref(&product), &inputs[..2], &output, &[weights, zeros.clone()]);
     let by_weights = run(&mut open(constant).unwrap(), &data[..2]).unwrap();
     assert_eq!(by_weights, [(vec![rows, columns], wanted.clone())]);
     let variable = graph(&[product], &inputs, &output, &[zeros]);

@@ -218,7 +218,7 @@ fn run(onnx: &[u8], inputs: &[(&[usize], Data<'_>)]) -> Vec<(Vec<usize>, Vec<f32
 }
 
 /// Decodes `tokens` in steps of the given sizes; returns the logits after the last.
-fn decoded(networks: &WhisperOnnx, tokens: &[i32], steps: &[usize]) -> Vec<f32> {
+fn decoded(networks: &WhisperOnnx, tokens: &[i64], steps: &[usize]) -> Vec<f32> {
     let mel: Vec<f32> = (0..BANDS * 3000).map(|at| (at as f32 * 0.37).sin()).collect();
     let heard = run(&networks.encoder, &[(&[1, BANDS, 3000], Data::F32(&mel))]);
     assert_eq!((&*heard[0].0, &*heard[1].0), (&[1, 64, 1500][..], &[1, 1500, 64][..]));
@@ -226,7 +226,7 @@ fn decoded(networks: &WhisperOnnx, tokens: &[i32], steps: &[usize]) -> Vec<f32> 
     let (mut logits, mut begin) = (Vec::new(), 0);
     for &count in steps {
         let rows = keys.len() / WIDTH;
-        let places: Vec<i32> = (begin as i32..(begin + count) as i32).collect();
+        let places: Vec<i64> = (begin as i64..(begin + count) as i64).collect();
         let mask = (0..count * (rows + count)).map(|at| {
             let (row, column) = (at / (rows + count), at % (rows + count));
             if (1..=rows + row).contains(&column) { 0.0 } else { -1e9 }
@@ -235,8 +235,8 @@ fn decoded(networks: &WhisperOnnx, tokens: &[i32], steps: &[usize]) -> Vec<f32> 
         let outputs = run(
             &networks.decoder,
             &[
-                (&[count], Data::I32(&tokens[begin..begin + count])),
-                (&[count], Data::I32(&places)),
+                (&[count], Data::I64(&tokens[begin..begin + count])),
+                (&[count], Data::I64(&places)),
                 (&[count, rows + count], Data::F32(&mask)),
                 (&[rows, WIDTH], Data::F32(&keys)),
                 (&[rows, WIDTH], Data::F32(&values)),
