@@ -4122,6 +4122,148 @@ static inline opendr_status opendr_infer_shaped_sac(const opendr_learner *learne
 }
 
 /*
+ * MobileRLLearner: Mobile manipulation: moves the base so that the arm can follow a planned motion of its gripper.
+ *
+ * Parameters:
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_mobile_rl(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("mobile_rl", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_mobile_rl(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * MultiObjectSearchRLLearner: Multi-object search: chooses where a robot drives next to find objects in a flat.
+ *
+ * Parameters:
+ *   deterministic (a bool, live, default true): Whether the policy takes its most likely actions instead of sampling.
+ *   seed (an int, default 0): Seed of sampled actions, at the start of a stream.
+ *   shield (a str, default none): Name of the safety rule that decides which actions are replaced (`opendr sim priors` lists the rules); none disables the shield.
+ *   shield_prior (a str, default none): Name of the prior that acts instead, in its newest version; none means the policy's own prior.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_multi_object_search_rl(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("multi_object_search_rl", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_multi_object_search_rl(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ActLearner: Action chunking with transformers: imitates demonstrations, several actions per prediction.
+ *
+ * Parameters:
+ *   temporal_ensemble (a bool, default true): Whether each action is the weighted mean of all predictions for its step, with one prediction per step.
+ *   temporal_ensemble_coeff (a float -10..=10, default 0.01): Decay of the weights of newer predictions: `exp(-coefficient i)`, where i is 0 for the oldest.
+ *   n_action_steps (an int 1..=1000, default 10): Actions of a chunk that are executed before the next prediction, without temporal ensemble.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_act(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("act", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_act(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * DiffusionPolicyLearner: Diffusion policy: imitates demonstrations that reach their goal in several ways.
+ *
+ * Parameters:
+ *   num_inference_steps (an int 1..=1000, default 10): Denoising steps per prediction (DDIM).
+ *   n_action_steps (an int 1..=1000, default 8): Actions of a prediction that are executed before the next one.
+ *   seed (an int, default 0): Seed of the noise, at the start of a stream.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_diffusion_policy(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("diffusion_policy", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_diffusion_policy(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * EndToEndPlanningRLLearner: Flies a drone between obstacles: maps its depth images to heading and yaw.
  *
  * Parameters:
@@ -4268,6 +4410,39 @@ static inline opendr_status opendr_infer_active_pose_recognition(const opendr_le
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
     if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * SingleDemoGraspLearner: Learns to grasp an object from one image with the places of the jaws, and predicts them in other images.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, live, default 0.5): Minimum confidence of a grasp: that of its less certain jaw.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_single_demo_grasp(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("single_demo_grasp", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_single_demo_grasp(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
     else opendr_value_free(&outputs_[0].value);
     return status_;
 }

@@ -880,21 +880,21 @@ class MultiObjectSearchRLLearner(NativeLearnerRL):
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
 
     Parameters of ``fit``, for one call or, given here, for all of them:
-        learning_rate: Learning rate of Adam. (default 0.0003; 0 to 1)
-        learning_rate_schedule: Schedule of the learning rate. (default 'constant'; one of 'constant', 'linear')
-        n_steps: Steps of each environment between two updates. (default 128; 1 to 1e+06)
-        batch_size: Steps per minibatch. (default 256; 1 to 1e+06)
+        learning_rate: Learning rate of Adam. (default 0.001; 0 to 1)
+        learning_rate_schedule: Schedule of the learning rate. (default 'linear'; one of 'constant', 'linear')
+        n_steps: Steps of each environment between two updates. (default 256; 1 to 1e+06)
+        batch_size: Steps per minibatch. (default 512; 1 to 1e+06)
         n_epochs: Passes over the collected steps per update. (default 4; 1 to 1000)
         gamma: Discount factor. (default 0.99; 0 to 1)
         gae_lambda: Lambda of generalised advantage estimation: 0 for one-step, 1 for Monte Carlo estimates.
-            (default 0.95; 0 to 1)
+            (default 0.9; 0 to 1)
         clip_range: Clipping range of the probability ratio. (default 0.2; 0 to 10)
         clip_range_schedule: Schedule of the clipping range. (default 'constant'; one of 'constant', 'linear')
         clip_range_vf: Clipping range of the values; none means no clipping. It depends on the scale of the
             rewards. (default None; 0 to 1e+09)
         normalize_advantage: Whether the advantages of a minibatch are normalised to mean 0 and standard deviation
             1. (default True)
-        ent_coef: Weight of the entropy in the loss. (default 0.005; 0 to 10)
+        ent_coef: Weight of the entropy in the loss. (default 0.0; 0 to 10)
         vf_coef: Weight of the value loss. (default 0.5; 0 to 100)
         max_grad_norm: Maximum norm of the gradients. (default 0.5; 0 to 1e+09)
         target_kl: KL divergence at 1.5 times which an update is stopped; none means no limit. (default None; 0 to
@@ -915,12 +915,14 @@ class MultiObjectSearchRLLearner(NativeLearnerRL):
             then. (default 0; 0 to 1e+09)
         log_std_init: Initial log standard deviation of continuous actions. (default 0.0; -20 to 20)
         norm_obs: Whether observations are normalised by the running mean and variance of the training. (default
-            True)
+            False)
         norm_reward: Whether rewards are divided by the standard deviation of the discounted return. (default
             False)
         clip_obs: Normalised observations are clipped to plus and minus this value. (default 10.0; 0 to 1e+09)
         clip_reward: Normalised rewards are clipped to plus and minus this value. (default 10.0; 0 to 1e+09)
-        total_timesteps: Steps of a whole training, over all environments. (default 300000; 1 to 2e+09; in OpenDR
+        demonstration_episodes: Episodes of frontier exploration that prefers seen objects, from which the policy
+            is cloned before the training; 0 begins without. (default 60; 0 to 1e+06)
+        total_timesteps: Steps of a whole training, over all environments. (default 100000; 1 to 2e+09; in OpenDR
             iters)
         n_envs: Number of parallel environments. (default 16; 1 to 65536)
         num_workers: Threads for environments and learning; results do not depend on them. (default 2; 1 to 256)
@@ -937,14 +939,14 @@ class MultiObjectSearchRLLearner(NativeLearnerRL):
     seed: int
     shield: Optional[str]
     shield_prior: Optional[str]
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, learning_rate: float = ..., learning_rate_schedule: Literal['constant', 'linear'] = ..., n_steps: int = ..., n_epochs: int = ..., gamma: float = ..., gae_lambda: float = ..., clip_range: float = ..., clip_range_schedule: Literal['constant', 'linear'] = ..., clip_range_vf: Optional[float] = ..., normalize_advantage: bool = ..., ent_coef: float = ..., vf_coef: float = ..., max_grad_norm: float = ..., target_kl: Optional[float] = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., sequence_length: Optional[int] = ..., net_arch_vf: Optional[list[Any]] = ..., ortho_init: bool = ..., actor_starts: int = ..., log_std_init: float = ..., norm_obs: bool = ..., norm_reward: bool = ..., clip_obs: float = ..., clip_reward: float = ..., seed: int = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ..., shield: Optional[str] = ..., shield_prior: Optional[str] = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, learning_rate: float = ..., learning_rate_schedule: Literal['constant', 'linear'] = ..., n_steps: int = ..., n_epochs: int = ..., gamma: float = ..., gae_lambda: float = ..., clip_range: float = ..., clip_range_schedule: Literal['constant', 'linear'] = ..., clip_range_vf: Optional[float] = ..., normalize_advantage: bool = ..., ent_coef: float = ..., vf_coef: float = ..., max_grad_norm: float = ..., target_kl: Optional[float] = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., sequence_length: Optional[int] = ..., net_arch_vf: Optional[list[Any]] = ..., ortho_init: bool = ..., actor_starts: int = ..., log_std_init: float = ..., norm_obs: bool = ..., norm_reward: bool = ..., clip_obs: float = ..., clip_reward: float = ..., seed: int = ..., demonstration_episodes: int = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ..., shield: Optional[str] = ..., shield_prior: Optional[str] = ...) -> None: ...
     @overload
     def infer(self, observation: Union[Observation, ArrayLike], *, deterministic: bool = ...) -> RlTarget: ...  # type: ignore[overload-overlap]
     @overload
     def infer(self, observation: Sequence[Union[Observation, ArrayLike]], *, progress: bool = ..., deterministic: bool = ...) -> list[RlTarget]: ...
     @overload
     def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, progress: bool = ..., deterministic: bool = ...) -> Iterator[RlTarget]: ...
-    def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, env_params: Optional[dict[str, Any]] = ..., out: Optional[PathLike] = ..., resume: bool = ..., learning_rate: float = ..., learning_rate_schedule: Literal['constant', 'linear'] = ..., n_steps: int = ..., batch_size: int = ..., n_epochs: int = ..., gamma: float = ..., gae_lambda: float = ..., clip_range: float = ..., clip_range_schedule: Literal['constant', 'linear'] = ..., clip_range_vf: Optional[float] = ..., normalize_advantage: bool = ..., ent_coef: float = ..., vf_coef: float = ..., max_grad_norm: float = ..., target_kl: Optional[float] = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., sequence_length: Optional[int] = ..., net_arch_vf: Optional[list[Any]] = ..., ortho_init: bool = ..., actor_starts: int = ..., log_std_init: float = ..., norm_obs: bool = ..., norm_reward: bool = ..., clip_obs: float = ..., clip_reward: float = ..., seed: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...
+    def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, env_params: Optional[dict[str, Any]] = ..., out: Optional[PathLike] = ..., resume: bool = ..., learning_rate: float = ..., learning_rate_schedule: Literal['constant', 'linear'] = ..., n_steps: int = ..., batch_size: int = ..., n_epochs: int = ..., gamma: float = ..., gae_lambda: float = ..., clip_range: float = ..., clip_range_schedule: Literal['constant', 'linear'] = ..., clip_range_vf: Optional[float] = ..., normalize_advantage: bool = ..., ent_coef: float = ..., vf_coef: float = ..., max_grad_norm: float = ..., target_kl: Optional[float] = ..., net_arch: list[Any] = ..., activation_fn: Literal['tanh', 'relu'] = ..., image_network: Literal['small', 'nature', 'flat'] = ..., gru_size: Optional[int] = ..., sequence_length: Optional[int] = ..., net_arch_vf: Optional[list[Any]] = ..., ortho_init: bool = ..., actor_starts: int = ..., log_std_init: float = ..., norm_obs: bool = ..., norm_reward: bool = ..., clip_obs: float = ..., clip_reward: float = ..., seed: int = ..., demonstration_episodes: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...
 
 class ActLearner(NativeLearnerImitation):
     """Action chunking with transformers: imitates demonstrations, several actions per prediction.
