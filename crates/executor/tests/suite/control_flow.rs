@@ -6,7 +6,7 @@ use opendr_onnx::proto::{GraphProto, NodeProto};
 
 use crate::graphs::{BOOL, F32, I64, floats, graph, ints, node, open, run, value, with_graph, with_int};
 
-/// `y = condition ? x * w : x - captured`, where `captured` is `x + x`.
+/// Returns `y = condition ? x * w : x - captured`, where `captured` is `x + x`.
 pub fn branches(condition: &str, nodes: &[NodeProto]) -> GraphProto {
     let then = graph(&[node("MatMul", &["x", "w"], &["a"])], &[], &[value("a", F32, &[])], &[]);
     let otherwise = graph(&[node("Sub", &["x", "captured"], &["b"])], &[], &[value("b", F32, &[])], &[]);
@@ -52,7 +52,7 @@ fn a_branch_that_the_shapes_determine_is_a_part_of_the_plan() {
     assert_eq!(run(&mut executor, &inputs).unwrap(), [(vec![2, 2], vec![-1.0, -1.0, -2.0, -2.0])]);
 }
 
-/// A loop that adds `x` to a sum, collects the sums, and goes on while the sum is below the limit.
+/// Returns a loop that adds `x` to a sum, collects the sums, and goes on while the sum is below the limit.
 pub fn sums() -> GraphProto {
     let body = graph(
         &[
@@ -103,7 +103,7 @@ fn an_endless_loop_is_an_error() {
     assert!(error.to_string().contains("do not end"), "{error}");
 }
 
-/// A loop in a loop, whose body grows its value: `y` has `outer * inner` elements more than `x`.
+/// Returns a loop in a loop, whose body grows its value: `y` has `outer * inner` elements more than `x`.
 pub fn growing() -> GraphProto {
     let inputs = |state: &str| [value("i", I64, &[]), value("c", BOOL, &[]), value(state, F32, &[-1])];
     let inner = graph(

@@ -5,7 +5,7 @@ use opendr_onnx::proto::GraphProto;
 
 use crate::graphs::{BOOL, F32, I64, floats, graph, ints, node, open, run, value, with_int};
 
-/// The elements of `x` above 0, doubled.
+/// Returns the elements of `x` above 0, doubled.
 pub fn positive() -> GraphProto {
     graph(
         &[

@@ -35,7 +35,7 @@ pub fn with_graph(mut node: NodeProto, key: &str, graph: GraphProto) -> NodeProt
     node
 }
 
-/// An input or output; a dimension of -1 is open.
+/// Returns an input or output; a dimension of -1 is open.
 pub fn value(name: &str, kind: DataType, dims: &[i64]) -> ValueInfoProto {
     let dim = dims.iter().map(|&dim| {
         let value = (dim >= 0).then_some(DimensionValue::Value(dim));
