@@ -413,7 +413,7 @@ def names_table():
             raise LookupError(f"{name} of opendr/_upstream is no class of a learner; correct its home in the module of {task}")
         instead = home.use if isinstance(home, Absent) else NOTHING
         runner = home.by.partition(":")[2] if isinstance(home, Runs) else name
-        learner = learners[runner] if home == HERE or isinstance(home, Runs) else NOTHING
+        learner = NOTHING if isinstance(home, Absent) else learners.get(runner, NOTHING)
         text += "\t".join((task, name, learner, instead)) + "\n"
     return text
 

@@ -119,7 +119,7 @@ pub use pipeline::Pipeline;
 pub use policy_evaluation::{
     PolicyController, PolicyEvaluation, evaluate_learner, evaluate_policy, training_environment,
 };
-pub use priors::priors;
+pub use priors::{prior, priors};
 pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{

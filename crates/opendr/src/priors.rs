@@ -1,5 +1,6 @@
 //! Priors: controllers by name, that policies start from, command, learn from, or are guarded by.
 
+use opendr_engine::Result;
 use opendr_rl::prior::Prior;
 
 use crate::registry::registry;
@@ -9,6 +10,15 @@ pub fn priors() -> Vec<Prior> {
     // The parameters of its learners name them.
     registry();
     Prior::all()
+}
+
+/// Returns the newest version of a prior of this process.
+///
+/// # Errors
+/// As [`Prior::newest`].
+pub fn prior(name: &str) -> Result<Prior> {
+    registry();
+    Prior::newest(name)
 }
 
 #[cfg(test)]

@@ -161,6 +161,7 @@ fn failed(error: gif::EncodingError) -> Error {
 
 #[cfg(test)]
 mod tests {
+    use opendr_engine::Random;
     use opendr_engine::environment::ResetOptions;
 
     use super::*;
@@ -169,14 +170,16 @@ mod tests {
     /// Every environment renders images, which depend on the state.
     #[test]
     fn every_environment_renders_images() {
+        let mut random = Random::new(0);
         for id in Registry::builtin().ids() {
             let mut environment = make(id).unwrap();
             assert!(environment.render().is_err(), "{id}");
             let mut seen = vec![0.0; environment.spec().observation.len()];
             environment.reset(Some(1), &ResetOptions::new(), &mut seen).unwrap();
             let before = environment.render().unwrap().unwrap();
-            let action = vec![0.0; environment.spec().action.len()];
+            let mut action = vec![0.0; environment.spec().action.len()];
             for _ in 0..3 {
+                environment.spec().action.sample_into(&mut random, &mut action);
                 if environment.step(&action, &mut seen).unwrap().is_over() {
                     break;
                 }

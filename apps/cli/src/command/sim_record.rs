@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::environment::EnvironmentSource as _;
 use opendr::imitation::{DemonstrationSet, RecordingOptions, write_demonstrations};
-use opendr::rl::prior::Prior;
 use opendr::{Progress as _, Result, Unit};
 
 use crate::exit::Outcome;
@@ -71,7 +70,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let mut environment =
         opendr::environments::source(&id, &environment_flags::params(&id, matches)?)?.make()?;
     let spec = environment.spec().clone();
-    let mut teacher = Prior::newest(&text("controller"))?.controller(&spec.observation)?;
+    let mut teacher = opendr::prior(&text("controller"))?.controller(&spec.observation)?;
     let options = RecordingOptions {
         episodes: matches.get_one::<u64>("episodes").map_or(100, |episodes| *episodes as usize),
         first_seed: matches.get_one("seed").copied().unwrap_or(0),

@@ -91,11 +91,8 @@ impl Environment for PlanarPush {
         *steps += 1;
         table.observe(observation);
         let (succeeded, lost) = (table.succeeded(), table.off_the_table());
-        let (distance, angle) = table.errors();
-        let info = Info::default()
-            .with("success", f64::from(u8::from(succeeded)))
-            .with("distance", distance)
-            .with("angle", angle);
+        let success = f64::from(u8::from(succeeded));
+        let info = Info::default().with("success", success).with("distance", table.errors().0);
         let end = END * (f64::from(u8::from(succeeded)) - f64::from(u8::from(lost)));
         let reward = (before - table.cost()).clamp(-END, END) + end;
         Ok(Step { reward, terminated: succeeded || lost, truncated: false, info })

@@ -40,9 +40,11 @@ pub fn export(id: &str, params: &ParamMap, seed: u64) -> Result<String> {
         "QuadTrack-v1" => quad_track::world(&episode)?,
         corridor if corridor.starts_with("UavDepthCorridor-") => corridor::world(&episode)?,
         other => {
-            return Err(Error::unsupported(format!(
-                "{other} has no world for Webots: the textures of its subjects cannot be exported yet"
-            )));
+            let reason = match other.starts_with("SphereView-") {
+                true => "the textures of its subjects cannot be exported yet",
+                false => "its bodies are not exported yet",
+            };
+            return Err(Error::unsupported(format!("{other} has no world for Webots: {reason}")));
         }
     };
     Ok(world.to_string())
