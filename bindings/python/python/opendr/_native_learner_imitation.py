@@ -7,7 +7,7 @@ from typing import Any, Optional
 
 from opendr._input_value import PathLike
 from opendr._native_learner_rl import NativeLearnerRL
-from opendr.engine.datasets import ExternalDataset
+from opendr.engine.datasets import Dataset
 
 
 class NativeLearnerImitation(NativeLearnerRL):
@@ -21,8 +21,8 @@ class NativeLearnerImitation(NativeLearnerRL):
         silent: bool = False,
         verbose: bool = True,
         *,
-        dataset: Optional[ExternalDataset] = None,
-        val_dataset: Optional[ExternalDataset] = None,
+        dataset: Optional[Dataset] = None,
+        val_dataset: Optional[Dataset] = None,
         env_params: Optional[dict[str, Any]] = None,
         out: Optional[PathLike] = None,
         resume: bool = False,

@@ -54,10 +54,10 @@ def rows(task: str) -> types.ModuleType:
 
 def learner(task: str, name: str) -> Optional[Learner]:
     """Returns the row of a learner, or None."""
-    if task not in TASKS:
-        return None
-    row: Optional[Learner] = getattr(rows(task), "LEARNERS", {}).get(name)
-    return row
+    # Policies and grasps of OpenDR's control are among our own packages.
+    among = [task] if task in TASKS else [other for other in TASKS if other.startswith("control.")]
+    found = (getattr(rows(other), "LEARNERS", {}).get(name) for other in among)
+    return next((row for row in found if row is not None), None)
 
 
 @functools.lru_cache(maxsize=None)
