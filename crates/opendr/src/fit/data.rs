@@ -7,9 +7,9 @@ use opendr_evaluation::Teacher;
 pub struct FitData<'a> {
     /// Training data.
     pub dataset: DatasetRef<'a>,
-    /// Validation data (default: those of [`FitOptions`]).
+    /// Validation data (default: those of [`FitOptions`](crate::FitOptions)).
     pub val_dataset: Option<DatasetRef<'a>>,
-    /// Teacher that annotates the samples (default: that of [`FitOptions`]).
+    /// Teacher that annotates the samples (default: that of [`FitOptions`](crate::FitOptions)).
     pub teacher: Option<Teacher>,
 }
 
