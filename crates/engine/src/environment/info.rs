@@ -2,11 +2,11 @@
 
 use smallvec::SmallVec;
 
-/// Named numbers of a step: `success`, the return of an episode, a distance. Up to two are stored inline, so that a step
+/// Named numbers of a step: `success`, the return of an episode, a distance. Up to three are stored inline, so that a step
 /// allocates nothing.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Info {
-    entries: SmallVec<[(&'static str, f64); 2]>,
+    entries: SmallVec<[(&'static str, f64); 3]>,
 }
 
 impl Info {

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use opendr_datasets::Problems;
-use opendr_engine::dataset::{DatasetIterator as _, DatasetRef, ExternalDataset, Subset};
+use opendr_engine::dataset::{DatasetIterator as _, DatasetRef, Subset};
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::{Error, Progress, Result, Statistics};
@@ -40,7 +40,7 @@ pub fn fit_policy(
     options: &FitOptions,
     progress: &dyn Progress,
 ) -> Result<Fitted> {
-    check_options(options)?;
+    check_options(options, false)?;
     let FitEnvironments { env, val_env } = environments;
     let fitted = fit_with(learner, entry, options, progress, |learner, job| {
         learner.fit_in(&options.params, env, val_env, job)
@@ -63,15 +63,13 @@ pub(super) fn fit_demonstrations(
     if teacher.is_some() {
         return Err(Error::unsupported("a policy learns from demonstrations, not from another learner"));
     }
-    let FitOptions { val, val_format, .. } = options;
-    check_options(&FitOptions { val: None, val_format: None, ..options.clone() })?;
-    let external =
-        val.as_ref().map(|path| ExternalDataset::new(path, val_format.as_deref().unwrap_or("auto")));
+    check_options(options, true)?;
+    let external = options.val_dataset();
     let val_dataset = val_dataset.or(external.as_ref().map(DatasetRef::External));
     let fitted = fit_with(learner, entry, options, progress, |learner, job| {
         learner.fit(&options.params, dataset, val_dataset, job)
     })?;
-    Fitted { dataset: name_of(dataset, options), ..fitted }.finish(progress)
+    Fitted { dataset: options.dataset_name(dataset), ..fitted }.finish(progress)
 }
 
 /// Trains a learner of active perception: perception on a data set, and the camera motion in environments from `env`.
@@ -95,21 +93,13 @@ pub fn fit_active(
         learner.fit_active(&options.params, Some(dataset), env, job)
     })?;
     let fitted = Fitted {
-        dataset: name_of(dataset, options),
+        dataset: options.dataset_name(dataset),
         samples: samples.len(),
         skipped: problems.count(),
         problems: problems.list(),
         ..fitted
     };
     fitted.finish(progress)
-}
-
-/// Returns the name of a data set in the report.
-fn name_of(dataset: DatasetRef<'_>, options: &FitOptions) -> String {
-    options.name.clone().unwrap_or_else(|| match dataset {
-        DatasetRef::External(external) => external.path().display().to_string(),
-        DatasetRef::Iterator(_) => String::new(),
-    })
 }
 
 /// Trains by `train`, and returns what is to be reported.
@@ -160,13 +150,13 @@ fn fit_with(
     })
 }
 
-/// Refuses options that apply to data sets only.
-fn check_options(options: &FitOptions) -> Result<()> {
+/// Refuses options that apply to data sets of samples only; demonstrations may have validation data.
+fn check_options(options: &FitOptions, may_validate: bool) -> Result<()> {
     let FitOptions { split, val, val_format, val_split, limit, teacher, .. } = options;
     let given = [
         ("split", split.is_some()),
-        ("val", val.is_some()),
-        ("val_format", val_format.is_some()),
+        ("val", val.is_some() && !may_validate),
+        ("val_format", val_format.is_some() && !may_validate),
         ("val_split", val_split.is_some()),
         ("limit", limit.is_some()),
         ("teacher", teacher.is_some()),

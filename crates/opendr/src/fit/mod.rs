@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use opendr_datasets::Problems;
-use opendr_engine::dataset::{DatasetIterator, DatasetRef, ExternalDataset, Subset};
+use opendr_engine::dataset::{DatasetIterator, DatasetRef, Subset};
 use opendr_engine::learner::{AnyLearner, Capabilities, Entry, FitJob};
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Device, Error, Progress, Result, Statistics};
@@ -65,10 +65,7 @@ pub fn fit(
     run_folder::check(&output, options.resume)?;
     let problems = options.problems();
     let preparation = Preparation { entry, options, output: &output, problems: &problems, progress };
-    let external = options
-        .val
-        .as_ref()
-        .map(|path| ExternalDataset::new(path, options.val_format.as_deref().unwrap_or("auto")));
+    let external = options.val_dataset();
     let val = data.val_dataset.or(external.as_ref().map(DatasetRef::External));
     let val = preparation.val(val, data.dataset)?;
     let (dataset, samples) = preparation.samples(data.dataset, data.teacher, learner.device())?;
@@ -139,11 +136,7 @@ impl Preparation<'_> {
             }
             (given, _) => given,
         };
-        let path = match dataset {
-            DatasetRef::External(external) => external.path().display().to_string(),
-            DatasetRef::Iterator(_) => String::new(),
-        };
-        let name = self.options.name.clone().unwrap_or(path);
+        let name = self.options.dataset_name(dataset);
         let samples =
             self.opening(teacher.is_none()).open_training(dataset, self.options.split.as_deref())?;
         let limit = self.options.limit.unwrap_or(usize::MAX);

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use opendr_datasets::Problems;
+use opendr_engine::dataset::{DatasetRef, ExternalDataset};
 use opendr_engine::params::ParamMap;
 use opendr_evaluation::ClassMatching;
 use serde::Deserialize;
@@ -52,6 +53,20 @@ pub struct FitOptions {
 impl FitOptions {
     pub(super) fn class_matching(&self) -> ClassMatching {
         ClassMatching { pairs: self.teacher_map.clone(), by_number: self.teacher_by_number }
+    }
+
+    /// Returns the name of a data set in the report: by default its path.
+    pub(super) fn dataset_name(&self, dataset: DatasetRef<'_>) -> String {
+        self.name.clone().unwrap_or_else(|| match dataset {
+            DatasetRef::External(external) => external.path().display().to_string(),
+            DatasetRef::Iterator(_) => String::new(),
+        })
+    }
+
+    /// Returns the validation data that the options name.
+    pub(super) fn val_dataset(&self) -> Option<ExternalDataset> {
+        let format = self.val_format.as_deref().unwrap_or("auto");
+        self.val.as_ref().map(|path| ExternalDataset::new(path, format))
     }
 
     pub(super) fn problems(&self) -> Problems {

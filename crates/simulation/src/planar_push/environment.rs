@@ -92,8 +92,9 @@ impl Environment for PlanarPush {
         table.observe(observation);
         let (succeeded, lost) = (table.succeeded(), table.off_the_table());
         let success = f64::from(u8::from(succeeded));
-        let info = Info::default().with("success", success).with("distance", table.errors().0);
-        let end = END * (f64::from(u8::from(succeeded)) - f64::from(u8::from(lost)));
+        let (distance, angle) = table.errors();
+        let info = Info::default().with("success", success).with("distance", distance).with("angle", angle);
+        let end = END * (success - f64::from(u8::from(lost)));
         let reward = (before - table.cost()).clamp(-END, END) + end;
         Ok(Step { reward, terminated: succeeded || lost, truncated: false, info })
     }
