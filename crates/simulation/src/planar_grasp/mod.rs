@@ -2,8 +2,8 @@
 //!
 //! The camera images are rendered analytically: objects are extruded polygons, depth is exact up to its noise. An attempt is place,
 //! angle and width of a grasp; the fingers come down beside the object, close with limited force, and the object is held if friction
-//! carries its weight and keeps it in the grip while the gripper moves. [`PlanarGrasp::demonstration`] is the view and the grasp that
-//! a person would show, for learners from a single demonstration.
+//! carries its weight and keeps it in the grip while the gripper moves. [`GraspDemonstration`] is the view and the grasp that a person
+//! would show, for learners from a single demonstration.
 
 mod attempt;
 mod camera;
