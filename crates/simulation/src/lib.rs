@@ -44,6 +44,7 @@ pub mod planar_peg;
 pub mod planar_push;
 pub mod quad_track;
 pub mod raycast;
+pub mod solids;
 pub mod sphere_view;
 pub mod street;
 pub mod uav_corridor;

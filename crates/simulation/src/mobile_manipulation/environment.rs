@@ -8,9 +8,11 @@ use opendr_engine::params::Params as _;
 use opendr_engine::{Error, Result};
 
 use super::episode::{Episode, Place, seconds};
+use super::motion::Motion;
 use super::{LIMIT, MobileManipulationParams, OBSERVATION_LEN, Task};
 use crate::NumpyRandom;
 use crate::classic_control::{check_length, not_begun};
+use crate::kinematics::Transform;
 use crate::multirotor::Vector;
 
 /// `MobileManipReach-v1` and its siblings: move the base so that the arm can follow the planned motion of its gripper.
@@ -39,7 +41,7 @@ impl MobileManipulation {
     ///
     /// # Errors
     /// `InvalidParam` for a parameter out of range.
-    pub(super) fn called(id: &str, task: Task, params: &MobileManipulationParams) -> Result<Self> {
+    pub fn called(id: &str, task: Task, params: &MobileManipulationParams) -> Result<Self> {
         let params = params.clone().checked()?;
         let actions = params.actions();
         let worst = 1.0 + 0.1 * params.speed_cost + params.action_cost * (1.0 + 2.0 * actions as f64);
@@ -56,6 +58,12 @@ impl MobileManipulation {
     /// Returns x, y and yaw of the base; none before the first reset.
     pub fn base(&self) -> Option<[f64; 3]> {
         self.episode.as_ref().map(|episode| episode.base)
+    }
+
+    /// Returns the poses at the ends of the planned motions of the gripper, in the world; nothing before the first reset.
+    pub fn goals(&self) -> Vec<Transform> {
+        let legs = self.episode.iter().flat_map(|episode| &episode.legs);
+        legs.map(|leg| Motion::begin(Transform::default(), leg.goal).goal).collect()
     }
 
     /// Returns the angles of the joints, in radians; none before the first reset.

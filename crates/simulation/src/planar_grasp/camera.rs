@@ -33,6 +33,16 @@ impl Camera {
         self.size
     }
 
+    /// Returns the field of view of the columns and of the rows, in radians.
+    pub fn field_of_view(&self) -> f64 {
+        2.0 * (HALF_VIEW / HEIGHT).atan()
+    }
+
+    /// Returns the height over the table, m.
+    pub fn height(&self) -> f64 {
+        HEIGHT
+    }
+
     fn focal_length(&self) -> f64 {
         0.5 * self.size as f64 * HEIGHT / HALF_VIEW
     }

@@ -19,6 +19,7 @@ use crate::classic_control::{check_length, not_begun};
 use crate::drawing::Drawing;
 use crate::multirotor::numbers;
 use crate::planar::{EpisodeKey, Pose};
+use crate::solids::Solid;
 
 /// `PlanarGrasp-v1`: grasp an object from above, as a camera sees it.
 ///
@@ -123,6 +124,17 @@ impl PlanarGrasp {
     pub fn shown_grasp(&self) -> Result<Grasp> {
         let episode = self.begun()?;
         Ok(episode.object.shown_grasp(&episode.pose))
+    }
+
+    /// Returns the object as a solid of [`GRASP_HEIGHT`](super::GRASP_HEIGHT).
+    ///
+    /// # Errors
+    /// `InvalidInput` before the first reset.
+    pub fn solid(&self) -> Result<Solid> {
+        let episode = self.begun()?;
+        let mut body = episode.object.body(episode.params.friction);
+        body.pose = episode.pose;
+        Ok(Solid::of(&body))
     }
 
     /// Returns what comes of a grasp, without moving the object.

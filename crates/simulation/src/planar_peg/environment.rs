@@ -13,6 +13,7 @@ use crate::RegisteredEnvironment;
 use crate::classic_control::{check_length, not_begun};
 use crate::multirotor::numbers;
 use crate::planar::EpisodeKey;
+use crate::solids::Solid;
 
 /// `PlanarPeg-v1`: grasp a peg, carry it around a post and insert it into a slot.
 ///
@@ -71,6 +72,14 @@ impl Episode {
 fn cost(bench: &Bench) -> f64 {
     let (tip, reach) = bench.errors();
     10.0 * (tip + reach)
+}
+
+impl PlanarPeg {
+    /// Returns the gripper, the peg, the post and the wall; nothing before the first reset.
+    pub fn solids(&self) -> Vec<Solid> {
+        let bodies = self.episode.iter().flat_map(|episode| &episode.bench.world().bodies);
+        bodies.map(Solid::of).collect()
+    }
 }
 
 impl Environment for PlanarPeg {

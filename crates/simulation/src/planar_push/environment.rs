@@ -13,6 +13,7 @@ use crate::RegisteredEnvironment;
 use crate::classic_control::{check_length, not_begun};
 use crate::multirotor::numbers;
 use crate::planar::EpisodeKey;
+use crate::solids::Solid;
 
 /// `PlanarPush-v1`: push a T to the goal pose in the middle of a table.
 ///
@@ -63,6 +64,14 @@ impl Episode {
     fn begin(params: PlanarPushParams, key: EpisodeKey) -> Self {
         let table = Table::draw(&params, &mut key.random());
         Self { params, key, table, steps: 0 }
+    }
+}
+
+impl PlanarPush {
+    /// Returns the pusher and the T; nothing before the first reset.
+    pub fn solids(&self) -> Vec<Solid> {
+        let bodies = self.episode.iter().flat_map(|episode| &episode.table.world().bodies);
+        bodies.map(Solid::of).collect()
     }
 }
 

@@ -1,10 +1,8 @@
 //! The corridor: obstacles, walls and a drone with a depth camera, which a controller places.
 
 use opendr_engine::Result;
-use opendr_engine::environment::{Environment as _, ResetOptions};
-use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::raycast::{Body, Shape};
-use opendr_simulation::uav_corridor::{RANGE, SIDE, UavDepthCorridor, UavDepthCorridorParams};
+use opendr_simulation::uav_corridor::{RANGE, SIDE, UavDepthCorridor};
 
 use super::episode::Episode;
 use super::node::Node;
@@ -19,9 +17,7 @@ const COLOURS: [[f64; 3]; 5] =
     [[0.45, 0.5, 0.4], [0.7, 0.7, 0.7], [0.3, 0.4, 0.8], [0.8, 0.5, 0.2], [0.7, 0.25, 0.3]];
 
 pub(super) fn world(episode: &Episode) -> Result<World> {
-    let mut environment = UavDepthCorridor::new(&episode.params::<UavDepthCorridorParams>()?)?;
-    let mut observation = vec![0.0; environment.spec().observation.len()];
-    environment.reset(Some(episode.seed), &ResetOptions::new(), &mut observation)?;
+    let environment = episode.environment::<UavDepthCorridor>()?;
     let pose = environment.pose();
     let position = pose.position.map(f64::from);
     let robot =

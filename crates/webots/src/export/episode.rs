@@ -1,9 +1,9 @@
 //! The episode whose world is exported.
 
 use opendr_engine::Result;
-use opendr_engine::environment::ResetOptions;
+use opendr_engine::environment::{Environment, ResetOptions};
 use opendr_engine::params::{ParamMap, Params};
-use opendr_simulation::Registration;
+use opendr_simulation::{RegisteredEnvironment, Registration};
 
 /// An environment after its reset.
 pub(super) struct Episode {
@@ -32,6 +32,20 @@ impl Episode {
         let has = |name: &str| P::FIELDS.iter().any(|field| field.is_called(name));
         let own = self.params.iter().filter(|(name, _)| has(name));
         P::from_map(&own.map(|(name, value)| (name.clone(), value.clone())).collect())
+    }
+
+    /// Returns the environment after the reset of the episode.
+    pub fn environment<E: RegisteredEnvironment>(&self) -> Result<E> {
+        let mut environment = E::new(&self.params::<E::Params>()?)?;
+        self.reset(&mut environment)?;
+        Ok(environment)
+    }
+
+    /// Begins the episode in another instance of the environment.
+    pub fn reset(&self, environment: &mut impl Environment) -> Result<()> {
+        let mut observation = vec![0.0; environment.spec().observation.len()];
+        environment.reset(Some(self.seed), &ResetOptions::new(), &mut observation)?;
+        Ok(())
     }
 
     /// Returns a number of the observation.

@@ -1,9 +1,7 @@
 //! The quadrotor that tracks a reference. Its plant is that of the environment, so a controller places it.
 
 use opendr_engine::Result;
-use opendr_engine::environment::{Environment as _, ResetOptions};
-use opendr_simulation::RegisteredEnvironment as _;
-use opendr_simulation::quad_track::{QuadTrack, QuadTrackParams};
+use opendr_simulation::quad_track::QuadTrack;
 
 use super::episode::Episode;
 use super::node::Node;
@@ -12,9 +10,7 @@ use super::world::{Physics, World, cuboid, robot, shape};
 const LEVEL: [f64; 4] = [0.0, 0.0, 1.0, 0.0];
 
 pub(super) fn world(episode: &Episode) -> Result<World> {
-    let mut environment = QuadTrack::new(&episode.params::<QuadTrackParams>()?)?;
-    let mut observation = episode.observation.clone();
-    environment.reset(Some(episode.seed), &ResetOptions::new(), &mut observation)?;
+    let environment = episode.environment::<QuadTrack>()?;
     let position = environment.position().unwrap_or_default();
     let reference = environment.reference().unwrap_or_default();
     let arm = |size: [f64; 3]| shape(cuboid(size), [0.2, 0.2, 0.25]);

@@ -36,6 +36,14 @@ impl World {
         Self { nodes: vec![info, view, sky, sun] }
     }
 
+    /// Sets the coefficient of friction of all contacts.
+    #[must_use]
+    pub fn with_friction(mut self, coefficient: f64) -> Self {
+        let contacts = Node::new("ContactProperties").list("coulombFriction", &[coefficient], 1);
+        self.nodes[0] = self.nodes[0].clone().nodes("contactProperties", vec![contacts]);
+        self
+    }
+
     #[must_use]
     pub fn with(mut self, node: Node) -> Self {
         self.nodes.push(node);
