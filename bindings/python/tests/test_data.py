@@ -302,3 +302,15 @@ def test_import_is_light():
     )
     seen = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert seen.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("shape", [(4, 6), (1, 4, 6), (4, 6, 1)])
+@pytest.mark.parametrize("dtype", ["uint16", "float32"])
+def test_plain_arrays_of_depth_keep_their_samples(shape, dtype):
+    from opendr._input_value import input_value
+
+    depth = np.arange(700, 724).reshape(shape).astype(dtype)
+    image = input_value(depth, "depth", "Image")
+    assert image.dtype == dtype and image.data.shape == (1, 4, 6)
+    assert (image.data.ravel() == depth.ravel()).all()
+    assert input_value(np.zeros((4, 6, 3), np.uint8), "image", "Image").dtype == "uint8"

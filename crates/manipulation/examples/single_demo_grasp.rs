@@ -34,10 +34,10 @@ fn main() -> Result<()> {
         let learner = SingleDemoGrasp::new(network, SingleDemoGraspParams { threshold: 0.0 });
         let params = PlanarGraspParams { object: Some(object), ..PlanarGraspParams::default() };
         let mut seconds = 0.0;
-        let counts = grasp_success(&params, poses, &GraspTolerance::default(), &mut |image| {
+        let counts = grasp_success(&params, poses, &GraspTolerance::default(), &mut |view| {
             let begun = Instant::now();
             let mut grasps = PoseList::default();
-            learner.infer_into(&mut (), image, &mut grasps)?;
+            learner.infer_into(&mut (), view.image, &mut grasps)?;
             seconds += begun.elapsed().as_secs_f64();
             Ok(grasps)
         })?;

@@ -5,7 +5,7 @@ use opendr_engine::data::Image;
 use opendr_engine::environment::{Environment as _, ResetOptions};
 use opendr_engine::target::PoseList;
 use opendr_simulation::RegisteredEnvironment as _;
-use opendr_simulation::planar_grasp::{Outcome, PlanarGrasp, PlanarGraspParams};
+use opendr_simulation::planar_grasp::{Grasp, Outcome, PlanarGrasp, PlanarGraspParams};
 
 /// How far a grasp may be from the demonstrated one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,6 +34,12 @@ pub struct GraspSuccess {
     pub near: u64,
     /// Grasps that held.
     pub held: u64,
+    /// Grasps whose fingers came down on the object.
+    pub collided: u64,
+    /// Grasps that closed on nothing.
+    pub missed: u64,
+    /// Grasps out of which the object slipped.
+    pub slipped: u64,
     /// Grasps within the tolerance that held.
     pub successes: u64,
     /// Mean distance of the predicted grasps from the demonstrated ones, m.
@@ -43,9 +49,18 @@ pub struct GraspSuccess {
 }
 
 /// First seed of the evaluated poses.
-const FIRST_SEED: u64 = 1_000_000;
+pub(crate) const FIRST_SEED: u64 = 1_000_000;
 
-/// Measures grasps that `predict` returns for the images of `poses` episodes: the first of each list is attempted.
+/// The images of the camera over the table.
+#[derive(Debug, Clone, Copy)]
+pub struct View<'a> {
+    /// Colour.
+    pub image: &'a Image,
+    /// Depth of the same size, floats in metres.
+    pub depth: &'a Image,
+}
+
+/// Measures grasps that `predict` returns for the views of `poses` episodes: the first of each list is attempted.
 ///
 /// # Errors
 /// Errors of `predict`, `InvalidParam` for parameters of the environment out of range.
@@ -53,25 +68,29 @@ pub fn grasp_success(
     params: &PlanarGraspParams,
     poses: u64,
     tolerance: &GraspTolerance,
-    predict: &mut dyn FnMut(&Image) -> Result<PoseList>,
+    predict: &mut dyn FnMut(View<'_>) -> Result<PoseList>,
 ) -> Result<GraspSuccess> {
     let mut environment = PlanarGrasp::new(params)?;
-    let camera = environment.camera();
     let mut seen = vec![0.0; environment.spec().observation.len()];
     let mut counts = GraspSuccess { poses, ..GraspSuccess::default() };
     for seed in FIRST_SEED..FIRST_SEED + poses {
         environment.reset(Some(seed), &ResetOptions::new(), &mut seen)?;
-        let grasps = predict(&environment.image()?)?;
-        let Some([left, right, ..]) = grasps.poses.first().map(|pose| &pose.keypoints[..]) else { continue };
-        let grasp = camera.grasp([[left.x, left.y], [right.x, right.y]]);
+        let Some(grasp) = first_grasp(&environment, predict)? else { continue };
         let (distance, angle) = grasp.difference(&environment.shown_grasp()?);
         let near = distance <= tolerance.distance && angle <= tolerance.angle;
-        let held = environment.test_grasp(&grasp)? == Outcome::Held;
+        let outcome = environment.test_grasp(&grasp)?;
+        let held = outcome == Outcome::Held;
         counts.predicted += 1;
         counts.mean_distance += distance;
         counts.mean_angle += angle;
         counts.near += u64::from(near);
-        counts.held += u64::from(held);
+        let counted = match outcome {
+            Outcome::Held => &mut counts.held,
+            Outcome::Collided => &mut counts.collided,
+            Outcome::Missed => &mut counts.missed,
+            Outcome::Slipped => &mut counts.slipped,
+        };
+        *counted += 1;
         counts.successes += u64::from(near && held);
     }
     if counts.predicted > 0 {
@@ -79,4 +98,16 @@ pub fn grasp_success(
         counts.mean_angle /= counts.predicted as f64;
     }
     Ok(counts)
+}
+
+/// Returns the first grasp that `predict` returns for the present view; none without one.
+pub(crate) fn first_grasp(
+    environment: &PlanarGrasp,
+    predict: &mut dyn FnMut(View<'_>) -> Result<PoseList>,
+) -> Result<Option<Grasp>> {
+    let grasps = predict(View { image: &environment.image()?, depth: &environment.depth()? })?;
+    let Some([left, right, ..]) = grasps.poses.first().map(|pose| &pose.keypoints[..]) else {
+        return Ok(None);
+    };
+    Ok(Some(environment.camera().grasp([[left.x, left.y], [right.x, right.y]])))
 }

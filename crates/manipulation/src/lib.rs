@@ -6,9 +6,11 @@
 //! Not here: the worlds and their scripted teachers (`opendr-simulation`), grasps of any object (`opendr-grasping`).
 
 mod grasp_success;
+mod regrasp;
 mod single_demo_grasp;
 
-pub use grasp_success::{GraspSuccess, GraspTolerance, grasp_success};
+pub use grasp_success::{GraspSuccess, GraspTolerance, View, grasp_success};
+pub use regrasp::held_within;
 pub use single_demo_grasp::{
     GraspExample, GraspNetwork, GraspTraining, SingleDemoGrasp, SingleDemoGraspFitParams,
     SingleDemoGraspParams, train_from_demonstration,

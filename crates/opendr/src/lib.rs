@@ -128,9 +128,9 @@ pub use tune::{
 pub use {
     opendr_active as active, opendr_control as control, opendr_datasets as datasets,
     opendr_evaluation as evaluation, opendr_imitation as imitation, opendr_inference as inference,
-    opendr_metrics as metrics, opendr_optimize as optimize, opendr_planning as planning, opendr_rl as rl,
-    opendr_runlog as runlog, opendr_simulation as simulation, opendr_tuning as tuning,
-    opendr_vision as vision, opendr_zoo as zoo,
+    opendr_manipulation as manipulation, opendr_metrics as metrics, opendr_optimize as optimize,
+    opendr_planning as planning, opendr_rl as rl, opendr_runlog as runlog, opendr_simulation as simulation,
+    opendr_tuning as tuning, opendr_vision as vision, opendr_zoo as zoo,
 };
 #[cfg(feature = "ros")]
 pub use {opendr_recordings as bags, opendr_ros as ros};

@@ -30,4 +30,17 @@ def input_value(value: Any, name: str, kind: str) -> Any:
         raise TypeError(f"{name} should be {article} {kind}, not {type(value).__name__}")
     if value is None or isinstance(value, (str, bytes)):
         raise TypeError(f"{name} should be {article} {kind} or an array of numbers, not {value!r:.100}")
+    if kind == "Image" and _is_depth(value):
+        return data.Image(value.reshape(1, *_rows_and_columns(value)), dtype=value.dtype, guess_format=False)
     return kind_class(value)
+
+
+def _is_depth(value: Any) -> bool:
+    """Returns whether the value is an array of one channel whose samples do not fit into 8 bits: millimetres or metres."""
+    one_channel = getattr(value, "ndim", 0) == 2 or (getattr(value, "ndim", 0) == 3 and 1 in (value.shape[0], value.shape[2]))
+    return one_channel and str(getattr(value, "dtype", "")) in ("uint16", "float32")
+
+
+def _rows_and_columns(value: Any) -> tuple[int, ...]:
+    shape: tuple[int, ...] = value.shape
+    return shape if len(shape) == 2 else (shape[1:] if shape[0] == 1 else shape[:2])
