@@ -1,6 +1,5 @@
 """Learners of OpenDR that are not available yet can be imported, and name a replacement."""
 
-from opendr.control.single_demo_grasp import SingleDemoGraspLearner
 from opendr.perception.continual_slam.continual_slam_learner import ContinualSLAMLearner
 from opendr.perception.gesture_recognition.gesture_recognition_learner import GestureRecognitionLearner
 from opendr.perception.multimodal_human_centric import IntentRecognitionLearner
@@ -10,7 +9,7 @@ from opendr.perception.speech_transcription import VoskLearner
 from opendr.simulation.human_model_generation import PIFuGeneratorLearner
 
 for learner in (
-    SingleDemoGraspLearner, ContinualSLAMLearner, GestureRecognitionLearner, IntentRecognitionLearner,
+    ContinualSLAMLearner, GestureRecognitionLearner, IntentRecognitionLearner,
     FSeq2NMSLearner, RetinaFaceLearner, YOLOv8SegLearner,
     VoskLearner, PIFuGeneratorLearner,
 ):  # fmt: skip

@@ -23,7 +23,7 @@ pub struct SingleDemoGraspFitParams {
     pub iters: u32,
     /// Augmented images of a step.
     #[param(default = 16, range = 1..=1024)]
-    pub batch_size: usize,
+    pub img_per_step: usize,
     /// Number of threads.
     #[param(default = 2, range = 1..=256)]
     pub num_workers: u32,
@@ -35,11 +35,11 @@ pub struct SingleDemoGraspFitParams {
 impl SingleDemoGraspFitParams {
     /// Returns the training.
     pub(super) fn training(&self) -> GraspTraining {
-        let Self { lr, iters, batch_size, num_workers, seed } = *self;
+        let Self { lr, iters, img_per_step, num_workers, seed } = *self;
         GraspTraining {
             rate: lr,
             steps: iters as usize,
-            batch: batch_size,
+            batch: img_per_step,
             threads: num_workers as usize,
             seed,
         }
