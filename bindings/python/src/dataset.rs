@@ -187,14 +187,17 @@ pub enum GivenDataset {
 }
 
 impl GivenDataset {
-    /// Accepts an `ExternalDataset`, or any data set of Python. Its data are converted to `types`, or by their own classes where
-    /// `types` is empty.
+    /// Accepts a path (of a data set whose format is detected), an `ExternalDataset`, or any data set of Python. Its data are
+    /// converted to `types`, or by their own classes where `types` is empty.
     pub fn from_python(object: &Bound<'_, PyAny>, types: &[ValueType]) -> PyResult<Self> {
         let external = object.py().import("opendr.engine.datasets")?.getattr("ExternalDataset")?;
         if object.is_instance(&external)? {
             let path: PathBuf = object.getattr("path")?.extract()?;
             let dataset_type: String = object.getattr("dataset_type")?.extract()?;
             return Ok(Self::External(ExternalDataset::new(path, dataset_type)));
+        }
+        if object.is_instance_of::<PyString>() || object.hasattr("__fspath__")? {
+            return Ok(Self::External(ExternalDataset::new(object.extract::<PathBuf>()?, "auto")));
         }
         let class = object.get_type().name()?.to_string();
         Ok(Self::Samples(PythonDataset::new(object, types.to_vec())?, class))
@@ -228,11 +231,10 @@ pub struct PythonDataset {
 
 impl PythonDataset {
     fn new(object: &Bound<'_, PyAny>, types: Vec<ValueType>) -> PyResult<Self> {
-        let is_text = object.is_instance_of::<PyString>();
-        if is_text || !object.hasattr("__getitem__")? || !object.hasattr("__len__")? {
+        if !object.hasattr("__getitem__")? || !object.hasattr("__len__")? {
             let class = object.get_type().name()?.to_string();
             return Err(PyTypeError::new_err(format!(
-                "dataset should be an ExternalDataset or a DatasetIterator, not {class}"
+                "dataset should be a path, an ExternalDataset or a DatasetIterator, not {class}"
             )));
         }
         let classes =

@@ -225,7 +225,7 @@ def test_wrong_arguments_of_the_training_are_refused(tmp_path):
     with pytest.raises(opendr.Unsupported, match="val_env is not supported"):
         learner.fit(WORLD, WORLD, out=tmp_path / "run")
     with pytest.raises(TypeError, match="ExternalDataset or a DatasetIterator"):
-        learner.fit(WORLD, dataset="photos", out=tmp_path / "run")
+        learner.fit(WORLD, dataset=3, out=tmp_path / "run")
     with pytest.raises(ValueError, match="no class of the environment"):
         shifted = [(Photos(1)[0][0], Category(10))]
         learner.fit(WORLD, dataset=shifted, silent=True, out=tmp_path / "run", **SMALL)

@@ -165,14 +165,17 @@ def test_eval_of_a_learner_in_python(picture):
 
 
 def test_eval_refuses_what_does_not_fit(detector, tmp_path):
-    with pytest.raises(TypeError, match="ExternalDataset"):
-        detector.eval("coco")
+    with pytest.raises(TypeError, match="a path, an ExternalDataset"):
+        detector.eval(3)
     with pytest.raises(FileNotFoundError):
         detector.eval(ExternalDataset(tmp_path / "none", "coco"))
     with pytest.raises(FileNotFoundError):
         detector.eval(ExternalDataset(tmp_path, "no such format"))
     with pytest.raises(ValueError):
         detector.eval(ExternalDataset(tmp_path, "auto"))
+    for path in (tmp_path / "none", str(tmp_path / "none")):
+        with pytest.raises(FileNotFoundError, match="none"):
+            detector.eval(path)
     with pytest.raises(ValueError, match="BoundingBoxList, not a Category"):
         detector.eval([(Image(np.zeros((3, 64, 64), np.uint8)), Category(1))])
 

@@ -6,9 +6,11 @@ import os
 from typing import Any, Union
 
 from opendr import _opendr
-from opendr.engine import data, target
+from opendr.engine import data, datasets, target
 
 PathLike = Union[str, "os.PathLike[str]"]
+#: A data set, or the path of one whose format is detected.
+DatasetLike = Union[PathLike, datasets.Dataset]
 #: Data types that are read from a path: images, videos and folders of frames, WAVE, tables (CSV, text, NPY), scans of KITTI.
 READ_FROM_FILES = ("Image", "Video", "Audio", "Timeseries", "Vector", "SkeletonSequence", "PointCloud")
 #: Data types that cannot be created from one array.

@@ -8,10 +8,9 @@ from typing import Any, NoReturn, Optional, Union
 
 from opendr import _opendr
 from opendr._errors import Unsupported
-from opendr._input_value import PathLike
+from opendr._input_value import DatasetLike, PathLike
 from opendr._native_inference import NativeInference
 from opendr._older_names import under_older_name
-from opendr.engine.datasets import Dataset
 
 
 class NativeBase(NativeInference):
@@ -92,8 +91,8 @@ class NativeBase(NativeInference):
         *,
         out: Optional[PathLike] = None,
         precision: str = "int8",
-        calibration: Union[None, Dataset] = None,
-        validation: Union[None, Dataset] = None,
+        calibration: Optional[DatasetLike] = None,
+        validation: Optional[DatasetLike] = None,
         verbose: bool = False,
         **options: Any,
     ) -> dict[str, Any]:

@@ -7,11 +7,10 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
-from opendr._input_value import PathLike
+from opendr._input_value import DatasetLike, PathLike
 from opendr._native_base import NativeBase
 from opendr._older_names import under_older_name
 from opendr._python_learners import registered_name
-from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
 
 
@@ -20,7 +19,7 @@ class NativeLearner(NativeBase, Learner):
 
     def eval(
         self,
-        dataset: Dataset,
+        dataset: DatasetLike,
         *,
         metric: Optional[str] = None,
         split: Optional[str] = None,
@@ -36,8 +35,9 @@ class NativeLearner(NativeBase, Learner):
         """Evaluates the learner on a data set.
 
         Args:
-            dataset: An ``ExternalDataset``, or any ``DatasetIterator`` of pairs of datum and target (a tuple of data for
-                several inputs). Classes are matched by name; a data set of yours lists its class names in ``classes``.
+            dataset: The path of a data set, whose format is detected, an ``ExternalDataset``, or any ``DatasetIterator`` of
+                pairs of datum and target (a tuple of data for several inputs). Classes are matched by name; a data set of
+                yours lists its class names in ``classes``.
             metric: Name of the metric (``opendr.metrics.names()``); by default that of the task.
             split: Split of an ``ExternalDataset``.
             limit: Maximum number of samples, from the first on.
@@ -78,8 +78,8 @@ class NativeLearner(NativeBase, Learner):
 
     def fit(
         self,
-        dataset: Dataset,
-        val_dataset: Optional[Dataset] = None,
+        dataset: DatasetLike,
+        val_dataset: Optional[DatasetLike] = None,
         logging_path: PathLike = "",
         silent: bool = False,
         verbose: bool = True,
@@ -103,8 +103,9 @@ class NativeLearner(NativeBase, Learner):
         Ctrl-C saves a checkpoint and raises ``KeyboardInterrupt``; ``resume`` continues from it.
 
         Args:
-            dataset: An ``ExternalDataset``, or any ``DatasetIterator`` of pairs of datum and target (a tuple of data for
-                several inputs); a data set of yours lists its class names in ``classes``.
+            dataset: The path of a data set, whose format is detected, an ``ExternalDataset``, or any ``DatasetIterator`` of
+                pairs of datum and target (a tuple of data for several inputs); a data set of yours lists its class names in
+                ``classes``.
             val_dataset: Data set for the evaluation after each epoch.
             logging_path: Folder for TensorBoard's event files and curves; empty: none.
             silent: Whether to print nothing at all.

@@ -7,9 +7,8 @@ from typing import Any, Optional
 
 from opendr import _opendr
 from opendr._errors import Unsupported
-from opendr._input_value import PathLike
+from opendr._input_value import DatasetLike, PathLike
 from opendr._native_learner_rl import NativeLearnerRL
-from opendr.engine.datasets import Dataset
 
 
 class NativeLearnerActive(NativeLearnerRL):
@@ -27,7 +26,7 @@ class NativeLearnerActive(NativeLearnerRL):
         silent: bool = False,
         verbose: bool = True,
         *,
-        dataset: Optional[Dataset] = None,
+        dataset: Optional[DatasetLike] = None,
         split: Optional[str] = None,
         limit: Optional[int] = None,
         env_params: Optional[dict[str, Any]] = None,
