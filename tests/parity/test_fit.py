@@ -103,7 +103,7 @@ def test_data_sets_of_python(counter, tmp_path, capsys):
     assert "trained on 4 samples of Boxes" in capsys.readouterr().out
     with pytest.raises(ValueError, match="is not empty"):
         counter.fit(Boxes(4), out=tmp_path / "run")
-    with pytest.raises(TypeError, match="ExternalDataset or a DatasetIterator, not int"):
+    with pytest.raises(TypeError, match="an ExternalDataset or a DatasetIterator, not int"):
         counter.fit(3)
     counter.fit(Boxes(4), out=tmp_path / "quiet", silent=True)
     assert capsys.readouterr().out == ""

@@ -34,6 +34,7 @@ mod train;
 mod wheel;
 mod words;
 mod workspace;
+mod zoo;
 
 use std::process::ExitCode;
 
@@ -68,6 +69,11 @@ usage: cargo xtask VERB
              card; resume an interrupted training
   train NAME --gpu
              train through Vulkan
+  zoo key FILE
+             write a secret key for a model repository, and its public key FILE.pub (minisign)
+  zoo publish TARGET [--key FILE] CONTAINER...
+             copy containers, or folders of them, into the model repository TARGET, sign them, and write its index; an interrupted
+             run goes on where it ended
   install-c PREFIX
              install the C library with its headers, pkg-config file and CMake package under PREFIX
 
@@ -95,6 +101,11 @@ fn main() -> ExitCode {
         ["train", name] => train::run(name, false),
         ["train", name, "--gpu"] => train::run(name, true),
         ["install-c", prefix] => install_c::run(prefix.as_ref()),
+        ["zoo", "key", file] => zoo::key(file.as_ref()),
+        ["zoo", "publish", target, "--key", key, ref sources @ ..] => {
+            zoo::publish(target.as_ref(), Some(key.as_ref()), sources)
+        }
+        ["zoo", "publish", target, ref sources @ ..] => zoo::publish(target.as_ref(), None, sources),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

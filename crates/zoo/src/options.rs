@@ -7,6 +7,7 @@ use std::time::Duration;
 use opendr_engine::{Result, cache_dir};
 
 use crate::models_package::installed;
+use crate::signature::RepositoryKey;
 
 /// Options of a [`Zoo`](crate::Zoo).
 #[derive(Debug, Clone)]
@@ -16,6 +17,8 @@ pub struct ZooOptions {
     pub cache: PathBuf,
     /// Folder or http(s) address that is used before all other sources.
     pub repository: Option<String>,
+    /// Key by which the containers of `repository` must be signed; without one they need no signature.
+    pub key: Option<RepositoryKey>,
     /// Folders in which OpenDR's own weights are searched, in this order; each like `models/weights` of the sources.
     pub models: Vec<PathBuf>,
     /// Whether to avoid the network.
@@ -33,6 +36,7 @@ impl ZooOptions {
         Self {
             cache: cache.into(),
             repository: None,
+            key: None,
             models: installed(),
             offline: false,
             timeout: Duration::from_secs(20),
@@ -40,14 +44,16 @@ impl ZooOptions {
         }
     }
 
-    /// Creates options from the environment: the cache is [`cache_dir`], the repository `OPENDR_MODEL_REPOSITORY`, and
-    /// `OPENDR_OFFLINE` other than `0` disables the network.
+    /// Creates options from the environment: the cache is [`cache_dir`], the repository `OPENDR_MODEL_REPOSITORY`, its key
+    /// `OPENDR_MODEL_KEY`, and `OPENDR_OFFLINE` other than `0` disables the network.
     ///
     /// # Errors
-    /// `NotFound` without a folder for the cache.
+    /// `NotFound` without a folder for the cache, `InvalidParam` for a key that cannot be read.
     pub fn from_env() -> Result<Self> {
         let mut options = Self::new(cache_dir()?);
-        options.repository = env::var("OPENDR_MODEL_REPOSITORY").ok().filter(|text| !text.is_empty());
+        let given = |name: &str| env::var(name).ok().filter(|text| !text.is_empty());
+        options.repository = given("OPENDR_MODEL_REPOSITORY");
+        options.key = given("OPENDR_MODEL_KEY").as_deref().map(RepositoryKey::new).transpose()?;
         options.offline =
             env::var_os("OPENDR_OFFLINE").is_some_and(|value| !value.is_empty() && value != "0");
         Ok(options)

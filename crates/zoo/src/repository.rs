@@ -11,6 +11,7 @@ use crate::card::CardFile;
 use crate::download::{address_below, download};
 use crate::http::Http;
 use crate::item::Item;
+use crate::signature::{MAX_SIGNATURE_BYTES, RepositoryKey, SIGNATURE_NAME};
 
 const MAX_MANIFEST_BYTES: u64 = 16 << 20;
 
@@ -36,10 +37,12 @@ impl Repository {
         path.join(MANIFEST_NAME).is_file().then_some(path)
     }
 
-    /// Returns the manifest of the item's container at an address and downloads its files into the cache.
+    /// Returns the manifest of the item's container at an address and downloads its files into the cache. With a key, its signature
+    /// is verified first.
     pub(crate) fn fetch_container(
         &self,
         item: &Item<'_>,
+        key: Option<&RepositoryKey>,
         http: &Http,
         cache: &Cache,
         progress: &dyn Progress,
@@ -48,6 +51,11 @@ impl Repository {
         let base = address_below(base, &item.place());
         let address = address_below(&base, MANIFEST_NAME);
         let Some(json) = http.small(&address, MAX_MANIFEST_BYTES, progress)? else { return Ok(None) };
+        if let Some(key) = key {
+            let signature =
+                http.small(&address_below(&base, SIGNATURE_NAME), MAX_SIGNATURE_BYTES, progress)?;
+            key.verify(item, &json, signature.as_deref(), &address)?;
+        }
         let manifest = Manifest::from_json(&json).context(|| address.clone())?;
         if manifest.learner != item.card.learner {
             return Err(Error::format(format!("{address} is a model of the learner {:?}", manifest.learner)));

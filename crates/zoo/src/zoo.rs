@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use opendr_engine::model::{Model, Sha256};
-use opendr_engine::{Error, Progress, Result, ResultExt};
+use opendr_engine::{Error, ErrorKind, Progress, Result, ResultExt};
 
 use crate::assembly::{Assembly, absent_is_fine};
 use crate::cache::Cache;
@@ -16,6 +16,7 @@ use crate::item::Item;
 use crate::models_package::ModelsPackage;
 use crate::options::ZooOptions;
 use crate::repository::{Repository, card_files, copy_container};
+use crate::signature::RepositoryKey;
 use crate::source_errors::SourceErrors;
 use crate::stopped;
 
@@ -38,6 +39,7 @@ pub struct Zoo {
     cards: Vec<Card>,
     offline: bool,
     repository: Option<Repository>,
+    key: Option<RepositoryKey>,
     models: ModelsPackage,
     cache: Cache,
     http: Http,
@@ -58,6 +60,7 @@ impl Zoo {
             cards,
             offline: options.offline,
             repository: options.repository.as_deref().map(Repository::new),
+            key: options.key,
             models: ModelsPackage::new(options.models),
             cache: Cache::new(options.cache),
             http: Http::new(options.timeout, options.retry_pause),
@@ -99,6 +102,7 @@ impl Zoo {
     /// As [`Zoo::download`].
     pub fn get(&self, spec: &str, progress: &dyn Progress) -> Result<PathBuf> {
         let item = self.find(spec)?;
+        self.check_signature(&item)?;
         match self.ready(&item) {
             Some(path) => Ok(path),
             None => self.fetch(&item, progress),
@@ -114,6 +118,7 @@ impl Zoo {
     /// card, `Network` when a source could not be reached.
     pub fn download(&self, spec: &str, to: Option<&Path>, progress: &dyn Progress) -> Result<PathBuf> {
         let item = self.find(spec)?;
+        self.check_signature(&item)?;
         let path = match self.ready(&item) {
             None => self.fetch(&item, progress)?,
             Some(path) => match check_whole(&item, &path) {
@@ -188,7 +193,8 @@ impl Zoo {
     /// Returns the cache folder of a container from the repository's address, which is used only while that repository is set.
     fn folder_of_repository(&self, item: &Item<'_>) -> Option<PathBuf> {
         let address = self.repository.as_ref()?.address()?;
-        let recipe = Sha256::of(format!("container at {address}").as_bytes());
+        let signer = self.key.as_ref().map_or_else(String::new, |key| format!(" by {}", key.base64()));
+        let recipe = Sha256::of(format!("container at {address}{signer}").as_bytes());
         Some(self.cache.item(&item.card.learner, &item.variant.name, &recipe))
     }
 
@@ -197,10 +203,18 @@ impl Zoo {
         self.repository.as_ref()?.container(item)
     }
 
+    /// Verifies the signature of the item's container in the repository's folder, if there are a container and a key.
+    fn check_signature(&self, item: &Item<'_>) -> Result<()> {
+        match (&self.key, self.own_container(item)) {
+            (Some(key), Some(path)) => key.verify_folder(item, &path),
+            _ => Ok(()),
+        }
+    }
+
     /// Returns the path of the item, if all its files have the right sizes.
     pub(crate) fn ready(&self, item: &Item<'_>) -> Option<PathBuf> {
         if let Some(path) = self.own_container(item) {
-            return Some(path);
+            return self.check_signature(item).is_ok().then_some(path);
         }
         let folder = self.folder(item).ok()?;
         if item.card.kind == ItemKind::Sample {
@@ -224,6 +238,7 @@ impl Zoo {
             cache: &self.cache,
             http: &self.http,
             repository: self.repository.as_ref(),
+            key: self.key.as_ref(),
             models: &self.models,
             offline: self.offline,
             progress,
@@ -237,6 +252,7 @@ impl Zoo {
                 let folder = self.folder_of_repository(item).unwrap_or(folder);
                 return assembly.of_container(&folder, manifest);
             }
+            Err(error) if self.key.is_some() && error.kind() == ErrorKind::Integrity => return Err(error),
             Err(error) => tried.add("OPENDR_MODEL_REPOSITORY", error),
         }
         let parts = self.parts(item, progress)?;

@@ -6,7 +6,7 @@ use crate::place::{Place, card, noise, url};
 use crate::server::{Fault, Server};
 use opendr_engine::model::{Manifest, ModelWriter};
 use opendr_engine::{ErrorKind, Model, Silent};
-use opendr_zoo::{Card, Zoo};
+use opendr_zoo::{Card, RepositoryKey, Zoo};
 
 const FROM_REPOSITORY: &str =
     "[[variants.sources]]\nkind = \"repository\"\nfiles = { \"model.onnx\" = \"faces/a.onnx\" }\n";
@@ -109,4 +109,76 @@ fn invalid_container_at_an_address_is_reported_and_the_card_used() {
     server.fail([Fault::None, Fault::None]);
     let error = zoo(&Place::new(), &repository, &bad).get("test", &Silent).unwrap_err();
     assert!(error.to_string().contains("model.json"), "{error}");
+}
+
+/// Signs with a key of the test, like `cargo xtask zoo publish`.
+fn sign(pair: &minisign::KeyPair, bytes: &[u8]) -> String {
+    minisign::sign(Some(&pair.pk), &pair.sk, bytes, None, None).unwrap().to_string()
+}
+
+#[test]
+fn with_a_key_containers_must_be_signed() {
+    let (place, bytes, server) = (Place::new(), noise(1000), Server::new());
+    let [pair, other] = [(); 2].map(|()| minisign::KeyPair::generate_unencrypted_keypair().unwrap());
+    let folder = place.0.join("repository");
+    let mut writer = ModelWriter::new(folder.join("test/one"), Manifest::new("test", "one")).unwrap();
+    writer.add("model.onnx", b"my own").unwrap();
+    writer.finish().unwrap();
+    let manifest = fs::read(folder.join("test/one/model.json")).unwrap();
+    let card = card(&bytes, &url(&format!("{}/a", server.address)));
+    server.put("/a", &bytes);
+    server.put("/models/test/one/model.json", &manifest);
+    server.put("/models/test/one/model.onnx", b"my own");
+    let address = format!("{}/models", server.address);
+    let signed_zoo = |repository: &str| {
+        let place = Place::new();
+        let mut options = place.options();
+        options.repository = Some(repository.to_owned());
+        options.key = Some(RepositoryKey::new(&pair.pk.to_base64()).unwrap());
+        (Zoo::with_cards(options, vec![Card::from_toml(&card).unwrap()]), place)
+    };
+    let refused = |text: &str| {
+        for repository in [folder.to_str().unwrap(), &address] {
+            let (zoo, _place) = signed_zoo(repository);
+            let error = zoo.get("test", &Silent).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Integrity, "{repository}: {error}");
+            assert!(error.to_string().contains(text), "{repository}: {error}");
+            assert!(zoo.download("test", None, &Silent).is_err() && zoo.cached("test").is_none());
+        }
+    };
+    let publish = |signature: &str| {
+        fs::write(folder.join("test/one/model.json.minisig"), signature).unwrap();
+        server.put("/models/test/one/model.json.minisig", signature.as_bytes());
+    };
+    refused("has no model.json.minisig");
+    for wrong in [sign(&other, &manifest), sign(&pair, b"else"), "nonsense".to_owned(), String::new()] {
+        publish(&wrong);
+        refused("is not by the key");
+    }
+    publish(&sign(&pair, &manifest));
+    for repository in [folder.to_str().unwrap(), &address] {
+        let (zoo, _place) = signed_zoo(repository);
+        let path = zoo.get("test", &Silent).unwrap();
+        assert_eq!(Model::open(path).unwrap().onnx().unwrap(), b"my own");
+        assert!(zoo.cached("test").is_some());
+    }
+    // The signed manifest of another model in the place of this one.
+    let swapped = String::from_utf8(manifest).unwrap().replace("\"one\"", "\"two\"");
+    fs::write(folder.join("test/one/model.json"), &swapped).unwrap();
+    server.put("/models/test/one/model.json", swapped.as_bytes());
+    publish(&sign(&pair, swapped.as_bytes()));
+    refused("is signed as test/two, not as test/one");
+}
+
+#[test]
+fn keys_are_text_or_files() {
+    let place = Place::new();
+    let pair = minisign::KeyPair::generate_unencrypted_keypair().unwrap();
+    let file = place.0.join("own.pub");
+    fs::write(&file, pair.pk.to_box().unwrap().to_string()).unwrap();
+    assert_eq!(RepositoryKey::new(file.to_str().unwrap()).unwrap().base64(), pair.pk.to_base64());
+    fs::write(&file, "untrusted comment: none\nabc\n").unwrap();
+    for wrong in ["", "RWQf6LRCGA9", file.to_str().unwrap()] {
+        assert_eq!(RepositoryKey::new(wrong).unwrap_err().kind(), ErrorKind::InvalidParam);
+    }
 }
