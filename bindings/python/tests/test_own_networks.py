@@ -80,3 +80,24 @@ def test_what_there_is_not_is_named(tmp_path):
     (tmp_path / "text.onnx").write_text("no network")
     with pytest.raises(ValueError, match="text.onnx"):
         YOLOv5DetectorLearner(path=tmp_path / "text.onnx", device="cpu")
+
+
+def test_segmented_objects_are_a_map_of_classes(tmp_path):
+    from opendr.perception.semantic_segmentation.yolov8_seg.yolov8_seg_learner import YOLOv8SegLearner
+
+    facts = json.loads((FIXTURES / "yolo_segment.json").read_text())
+    width, height = facts["image"]
+    image = np.random.default_rng(7).integers(0, 256, (height, width, 3), np.uint8)
+    with pytest.warns(UserWarning, match="model_name"):
+        learner = YOLOv8SegLearner("yolov8s-seg", network("yolo_segment", tmp_path), "cpu")
+    heatmap = learner.infer(image, conf_thres=facts["threshold"])
+    boxes = learner.get_bboxes()
+    assert len(boxes) > 0 and heatmap.data.shape == (height, width)
+    classes = {int(box.name) + 1 for box in boxes.data}
+    assert set(np.unique(heatmap.data)) - {0} <= classes and heatmap.data.any()
+    masks = boxes.to_supervision((height, width)).mask
+    assert (heatmap.data > 0).sum() == masks.any(axis=0).sum()
+    names = learner.get_classes()
+    assert names[0] == "background" and len(names) == len(learner.classes) + 1
+    assert learner.get_visualization().data.shape == (3, height, width)
+    assert [map.data.shape for map in learner.infer([image, image])] == [(height, width)] * 2

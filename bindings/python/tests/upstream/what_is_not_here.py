@@ -4,13 +4,12 @@ from opendr.perception.continual_slam.continual_slam_learner import ContinualSLA
 from opendr.perception.gesture_recognition.gesture_recognition_learner import GestureRecognitionLearner
 from opendr.perception.multimodal_human_centric import IntentRecognitionLearner
 from opendr.perception.object_detection_2d import FSeq2NMSLearner, RetinaFaceLearner
-from opendr.perception.semantic_segmentation import YOLOv8SegLearner
 from opendr.perception.speech_transcription import VoskLearner
 from opendr.simulation.human_model_generation import PIFuGeneratorLearner
 
 for learner in (
     ContinualSLAMLearner, GestureRecognitionLearner, IntentRecognitionLearner,
-    FSeq2NMSLearner, RetinaFaceLearner, YOLOv8SegLearner,
+    FSeq2NMSLearner, RetinaFaceLearner,
     VoskLearner, PIFuGeneratorLearner,
 ):  # fmt: skip
     try:

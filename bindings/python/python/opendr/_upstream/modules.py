@@ -139,7 +139,11 @@ def _runner(module: str, name: str, home: Runs) -> Any:
         return getattr(package, name)
     path, _, of = home.by.partition(":")
     base = getattr(import_module(path), of, None)
-    return _not_built(name, module) if base is None else native_class({**base._entry, "class_name": name}, module)
+    if base is None:
+        return _not_built(name, module)
+    # The row is that of the package in which OpenDR has the class.
+    of_package, _, task = _task(module).rpartition(".")
+    return native_class({**base._entry, "class_name": name, "package": of_package, "task": task}, module)
 
 
 def _not_built(name: str, module: str) -> Any:

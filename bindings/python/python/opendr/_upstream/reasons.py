@@ -4,6 +4,7 @@ from __future__ import annotations
 
 REASONS = {
     "boxes": "VPIT uses another training target for boxes near the object",
+    "classwise": "boxes of different classes do not suppress each other",
     "config": "parameters are keyword arguments",
     "csv": "`out` receives predictions and a report",
     "dcn": "there are no deformable convolutions",
@@ -13,6 +14,7 @@ REASONS = {
     "epoch": "it would only appear in a log",
     "evaluate": "`val_dataset` determines whether there is an evaluation",
     "file": "the network of the file that is loaded defines it",
+    "filter": "FilteredLearnerWrapper selects classes",
     "flush": "every number is written at once",
     "half": "the runtime chooses the precision",
     "images": "there is one sample image",
