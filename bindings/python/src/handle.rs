@@ -125,6 +125,43 @@ impl Handle {
         })
     }
 
+    /// Returns the plan of an evaluation in at most `count` parts from sample `first` on: the first line of the file of predictions,
+    /// parameters that the learners of the parts need, and the parts. `options` are those of `eval`.
+    fn eval_plan<'py>(
+        &self,
+        py: Python<'py>,
+        dataset: &Bound<'py, PyAny>,
+        options: &str,
+        first: usize,
+        count: usize,
+    ) -> PyResult<(String, Bound<'py, PyDict>, Vec<[usize; 2]>)> {
+        let mut options = eval_options_from_json(options).to_python(py)?;
+        let dataset = GivenDataset::from_python(dataset, &types_of_ports(self.entry.ports))?;
+        options.name = Some(dataset.name());
+        let plan = PythonBar::new(true).run(py, |_| {
+            let learner = lock(&self.learner);
+            options.open(self.entry, dataset.as_ref())?.plan(learner.as_ref(), self.entry, first, count)
+        })?;
+        Ok((plan.heading, python_from_params(py, &plan.params)?, plan.parts))
+    }
+
+    /// Predicts the samples from `part[0]` to before `part[1]`. Returns the lines of the file of predictions.
+    fn eval_part(
+        &self,
+        py: Python<'_>,
+        dataset: &Bound<'_, PyAny>,
+        options: &str,
+        part: [usize; 2],
+    ) -> PyResult<String> {
+        let options = eval_options_from_json(options).to_python(py)?;
+        let dataset = GivenDataset::from_python(dataset, &types_of_ports(self.entry.ports))?;
+        PythonBar::new(true).run(py, |bar| {
+            let learner = &mut *lock(&self.learner);
+            let job = options.open(self.entry, dataset.as_ref())?;
+            job.predict_part(std::slice::from_mut(learner), self.entry, part[0]..part[1], bar)
+        })
+    }
+
     /// Trains the learner. `options` are JSON; `teacher` is another handle, or the name and the object of a learner written in
     /// Python. Returns the report as JSON and as text.
     fn fit(

@@ -1,11 +1,12 @@
 //! Evaluation of a learner on a data set.
 
 use std::fs;
+use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
 use opendr_datasets::{Problem, Problems};
-use opendr_engine::dataset::DatasetIterator;
+use opendr_engine::dataset::{DatasetIterator, Subset};
 use opendr_engine::learner::{AnyLearner, Entry, Port};
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::target::Classes;
@@ -15,7 +16,7 @@ use opendr_metrics::MetricEntry;
 use crate::bootstrap::Groups;
 use crate::classes::{AnnotatedClasses, MapLabels, annotated_classes};
 use crate::contact_sheet::{ContactSheetSamples, ScoredSample};
-use crate::journal::{Heading, Journal, Line, SampleResult};
+use crate::journal::{Heading, Journal, Line, PREDICTIONS_FORMAT, SampleResult, json_line};
 use crate::predictor::PredictionJob;
 use crate::{ClassMap, ClassMatching, FilePredictions, Outcome, Predictor, SampleObserver, Subject};
 
@@ -100,6 +101,39 @@ impl<'a> Evaluation<'a> {
         outcome
     }
 
+    /// Predicts a part of the samples with the parameters of the learners as they are, without a metric: for evaluations whose parts run
+    /// on several machines. Returns a line for each sample. [`Evaluation::heading`] and the lines of all parts in their order are the file
+    /// of predictions from which the whole evaluation resumes.
+    ///
+    /// # Errors
+    /// `Internal` for a prediction that cannot be written as JSON.
+    pub fn predict_part(
+        &self,
+        learners: &mut [Box<dyn AnyLearner>],
+        ports: &[Port],
+        dataset: &dyn DatasetIterator,
+        part: Range<usize>,
+    ) -> Result<String> {
+        let samples = Subset::first(dataset, part.end);
+        let (wanted, observer) = (self.metric.prediction, self.observer);
+        let job = PredictionJob { ports, dataset: &samples, first: part.start, wanted, observer };
+        let mut lines = String::new();
+        job.predict(learners, self.progress, |line| {
+            lines.push_str(&json_line(&line)?);
+            Ok(())
+        })?;
+        Ok(lines)
+    }
+
+    /// Returns the first line of the file of predictions.
+    ///
+    /// # Errors
+    /// `Internal` where it cannot be written as JSON.
+    pub fn heading(&self, dataset: &dyn DatasetIterator) -> Result<String> {
+        Ok(PREDICTIONS_FORMAT.to_json(&Heading::new(self.subject.clone(), self.dataset.clone(), dataset))?
+            + "\n")
+    }
+
     /// Evaluates predictors with the inputs `ports`, as [`Evaluation::run`] evaluates learners. `classes` are the classes of their
     /// predictions, where these do not name them. Thresholds are not changed.
     ///
@@ -133,23 +167,27 @@ impl<'a> Evaluation<'a> {
         self.finish(tally, begun, describe)
     }
 
-    /// Lowers the threshold for metrics that rank predictions of all scores, if it has its default value. Returns the
-    /// original value.
+    /// Returns the threshold for metrics that rank predictions of all scores, instead of the learner's if that is the default and
+    /// larger.
+    pub fn lowered_threshold(&self, learner: &dyn AnyLearner) -> Option<ParamValue> {
+        let was = learner.params().remove(THRESHOLD).filter(|_| self.metric.is_ranking)?;
+        let is_default = learner.default_of(THRESHOLD).as_ref() == Some(&was);
+        (is_default && was.as_float()? > LOW_THRESHOLD).then_some(ParamValue::Float(LOW_THRESHOLD))
+    }
+
+    /// Sets the [lowered threshold](Self::lowered_threshold). Returns the original value.
     fn lower_threshold(&self, learners: &mut [Box<dyn AnyLearner>]) -> Result<Option<ParamValue>> {
-        let Some(first) = learners.first().filter(|_| self.metric.is_ranking) else { return Ok(None) };
-        let Some(was) = first.params().remove(THRESHOLD) else { return Ok(None) };
-        if first.default_of(THRESHOLD).as_ref() != Some(&was)
-            || was.as_float().is_none_or(|was| was <= LOW_THRESHOLD)
-        {
-            return Ok(None);
-        }
-        let low = ParamValue::Float(LOW_THRESHOLD);
+        let Some(first) = learners.first() else { return Ok(None) };
+        let Some(low) = self.lowered_threshold(first.as_ref()) else { return Ok(None) };
+        let was = first.params().remove(THRESHOLD);
         learners.iter_mut().try_for_each(|learner| learner.set(THRESHOLD, low.clone()))?;
-        self.progress.note(&format!(
-            "threshold {LOW_THRESHOLD} instead of {was}: {} ranks predictions of all scores",
-            self.metric.name
-        ));
-        Ok(Some(was))
+        if let Some(was) = &was {
+            self.progress.note(&format!(
+                "threshold {LOW_THRESHOLD} instead of {was}: {} ranks predictions of all scores",
+                self.metric.name
+            ));
+        }
+        Ok(was)
     }
 
     /// Evaluates predictions from files.

@@ -101,7 +101,7 @@ impl Journal {
         if !first.ends_with('\n') {
             file.set_len(0).context(context)?;
             let mut journal = Self { path: path.to_owned(), file };
-            journal.append(PREDICTIONS_FORMAT.to_json(heading)?)?;
+            journal.append(PREDICTIONS_FORMAT.to_json(heading)? + "\n")?;
             return Ok(journal);
         }
         check_heading(path, &first, heading)?;
@@ -153,15 +153,19 @@ impl Journal {
     /// # Errors
     /// `Io` when the disk is full.
     pub fn write(&mut self, line: &impl Serialize) -> Result<()> {
-        let text = serde_json::to_string(line)
-            .map_err(|error| Error::internal("a prediction cannot be written as JSON").with_source(error))?;
-        self.append(text)
+        self.append(json_line(line)?)
     }
 
-    fn append(&mut self, mut text: String) -> Result<()> {
-        text.push('\n');
+    fn append(&mut self, text: String) -> Result<()> {
         self.file.write_all(text.as_bytes()).context(|| format!("writing {}", self.path.display()))
     }
+}
+
+/// Returns the JSON of a sample as a line.
+pub fn json_line(line: &impl Serialize) -> Result<String> {
+    let text = serde_json::to_string(line)
+        .map_err(|error| Error::internal("a prediction cannot be written as JSON").with_source(error))?;
+    Ok(text + "\n")
 }
 
 /// Returns how many of the first `count` samples belong to complete sequences.

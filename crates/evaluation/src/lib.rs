@@ -47,7 +47,7 @@ pub use file_predictions::{FilePredictions, Lines};
 pub use journal::PREDICTIONS_FORMAT;
 pub use labelled_dataset::LabelledDataset;
 pub use open::open_for_metric;
-pub use options::{EvalJob, EvalOptions};
+pub use options::{EvalJob, EvalOptions, PartsPlan};
 pub use outcome::Outcome;
 pub use predictor::{PredictedSample, Predictor, SampleObserver};
 pub use subject::Subject;

@@ -1,6 +1,7 @@
 //! Options of an evaluation, as JSON.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::PathBuf;
 
 use opendr_datasets::Problems;
@@ -8,7 +9,7 @@ use opendr_engine::dataset::{DatasetIterator, DatasetRef, Subset};
 use opendr_engine::learner::{AnyLearner, Entry, Port};
 use opendr_engine::params::ParamMap;
 use opendr_engine::target::Classes;
-use opendr_engine::{Progress, Result};
+use opendr_engine::{Progress, Result, Silent};
 use opendr_metrics::{MetricEntry, find};
 use serde::Deserialize;
 
@@ -55,6 +56,17 @@ pub struct EvalJob<'a> {
     metric: &'static MetricEntry,
     name: String,
     options: &'a EvalOptions,
+}
+
+/// What the machines of an evaluation in parts do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartsPlan {
+    /// First line of the file of predictions.
+    pub heading: String,
+    /// Parameters of the learners that predict, where they are others than those of the evaluated one.
+    pub params: ParamMap,
+    /// First sample of each part, and the one after its last.
+    pub parts: Vec<[usize; 2]>,
 }
 
 impl EvalOptions {
@@ -115,7 +127,7 @@ impl EvalOptions {
         dataset: DatasetRef<'_>,
         progress: &dyn Progress,
     ) -> Result<Outcome> {
-        let subject = Subject { learner: entry.spec.name.to_owned(), model: None, params: learner.params() };
+        let subject = Subject::of(entry, learner.as_ref());
         self.open(entry, dataset)?.run(std::slice::from_mut(learner), entry, subject, progress)
     }
 }
@@ -140,6 +152,70 @@ impl EvalJob<'_> {
             }
         }
         evaluation.run(learners, entry, &self.dataset)
+    }
+
+    /// Returns at most `count` parts of the samples from `first` on, of about the same size and without a sequence in two of them: the first
+    /// sample of each, and the one after its last.
+    fn parts(&self, first: usize, count: usize) -> Vec<[usize; 2]> {
+        let (begin, samples) = (first.min(self.dataset.len()), self.dataset.len());
+        let mut parts = Vec::new();
+        let mut start = begin;
+        for part in 1..=count.max(1) {
+            let end = begin + (samples - begin) * part / count.max(1);
+            let end = if end == samples { end } else { self.end_of_sequence(end) };
+            if end > start {
+                parts.push([start, end]);
+                start = end;
+            }
+        }
+        parts
+    }
+
+    /// Returns the sample after the sequence of the sample before `end`.
+    fn end_of_sequence(&self, end: usize) -> usize {
+        let same = |at: usize| {
+            let sequence = self.dataset.sequence(at);
+            at > 0 && sequence.is_some() && sequence == self.dataset.sequence(at - 1)
+        };
+        (end..self.dataset.len()).find(|at| !same(*at)).unwrap_or(self.dataset.len())
+    }
+
+    /// Returns the plan of an evaluation whose parts run elsewhere.
+    ///
+    /// # Errors
+    /// As [`Evaluation::heading`].
+    pub fn plan(
+        &self,
+        learner: &dyn AnyLearner,
+        entry: &Entry,
+        first: usize,
+        count: usize,
+    ) -> Result<PartsPlan> {
+        let evaluation = self.evaluation(Subject::of(entry, learner), &Silent);
+        Ok(PartsPlan {
+            heading: evaluation.heading(&self.dataset)?,
+            params: evaluation
+                .lowered_threshold(learner)
+                .map(|low| ("threshold".to_owned(), low))
+                .into_iter()
+                .collect(),
+            parts: self.parts(first, count),
+        })
+    }
+
+    /// Predicts a part of the samples; see [`Evaluation::predict_part`].
+    ///
+    /// # Errors
+    /// As [`Evaluation::predict_part`].
+    pub fn predict_part(
+        &self,
+        learners: &mut [Box<dyn AnyLearner>],
+        entry: &Entry,
+        part: Range<usize>,
+        progress: &dyn Progress,
+    ) -> Result<String> {
+        let evaluation = self.evaluation(Subject::default(), progress);
+        evaluation.predict_part(learners, entry.ports, &self.dataset, part)
     }
 
     /// Returns whether the metric is that of the task of a learner.

@@ -1,5 +1,6 @@
 //! The evaluated learner, as journals and outcomes name it.
 
+use opendr_engine::learner::{AnyLearner, Entry};
 use opendr_engine::params::ParamMap;
 use serde::{Deserialize, Serialize};
 
@@ -13,4 +14,11 @@ pub struct Subject {
     pub model: Option<String>,
     /// Parameters of the learner.
     pub params: ParamMap,
+}
+
+impl Subject {
+    /// Returns the subject of a learner with its parameters and a model of the zoo, or none.
+    pub fn of(entry: &Entry, learner: &dyn AnyLearner) -> Self {
+        Self { learner: entry.spec.name.to_owned(), model: None, params: learner.params() }
+    }
 }

@@ -75,7 +75,7 @@ pub fn grasp_success(
     let mut counts = GraspSuccess { poses, ..GraspSuccess::default() };
     for seed in FIRST_SEED..FIRST_SEED + poses {
         environment.reset(Some(seed), &ResetOptions::new(), &mut seen)?;
-        let Some(grasp) = first_grasp(&environment, predict)? else { continue };
+        let Some(grasp) = nth_grasp(&environment, 0, predict)? else { continue };
         let (distance, angle) = grasp.difference(&environment.shown_grasp()?);
         let near = distance <= tolerance.distance && angle <= tolerance.angle;
         let outcome = environment.test_grasp(&grasp)?;
@@ -100,14 +100,15 @@ pub fn grasp_success(
     Ok(counts)
 }
 
-/// Returns the first grasp that `predict` returns for the present view; none without one.
-pub(crate) fn first_grasp(
+/// Returns grasp `nth` of those that `predict` returns for the present view, counted on from the first where there are fewer; none
+/// without one.
+pub(crate) fn nth_grasp(
     environment: &PlanarGrasp,
+    nth: usize,
     predict: &mut dyn FnMut(View<'_>) -> Result<PoseList>,
 ) -> Result<Option<Grasp>> {
-    let grasps = predict(View { image: &environment.image()?, depth: &environment.depth()? })?;
-    let Some([left, right, ..]) = grasps.poses.first().map(|pose| &pose.keypoints[..]) else {
-        return Ok(None);
-    };
+    let poses = predict(View { image: &environment.image()?, depth: &environment.depth()? })?.poses;
+    let chosen = poses.get(nth % poses.len().max(1));
+    let Some([left, right, ..]) = chosen.map(|pose| &pose.keypoints[..]) else { return Ok(None) };
     Ok(Some(environment.camera().grasp([[left.x, left.y], [right.x, right.y]])))
 }

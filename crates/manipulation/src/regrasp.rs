@@ -6,11 +6,12 @@ use opendr_engine::target::PoseList;
 use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::planar_grasp::{PlanarGrasp, PlanarGraspParams};
 
-use crate::grasp_success::{FIRST_SEED, View, first_grasp};
+use crate::grasp_success::{FIRST_SEED, View, nth_grasp};
 
 /// Returns for each number of attempts, from 1 to `attempts`, how many of the objects of `poses` episodes were held within it.
 ///
-/// In each attempt, `predict` sees the object where the attempts before have pushed it, and the first grasp of its list is attempted.
+/// In each attempt, `predict` sees the object where the attempts before have pushed it. The first attempt takes the first grasp of its
+/// list, the next ones the further grasps: what failed once fails again where nothing has moved.
 ///
 /// # Errors
 /// Errors of `predict`, `InvalidParam` for parameters of the environment out of range.
@@ -26,7 +27,7 @@ pub fn held_within(
     for seed in FIRST_SEED..FIRST_SEED + poses {
         environment.reset(Some(seed), &ResetOptions::new(), &mut seen)?;
         for attempt in 0..attempts {
-            let Some(grasp) = first_grasp(&environment, predict)? else { break };
+            let Some(grasp) = nth_grasp(&environment, attempt, predict)? else { break };
             let step = environment.step(&grasp.action(), &mut seen)?;
             if step.info.success() == Some(true) {
                 held[attempt..].iter_mut().for_each(|count| *count += 1);

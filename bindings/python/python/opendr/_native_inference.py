@@ -6,7 +6,7 @@ import operator
 from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar, Optional
 
-from opendr._errors import InternalError, InvalidInput
+from opendr._errors import InternalError, InvalidInput, Unsupported
 from opendr._input_value import input_value
 from opendr._native_arguments import NativeArguments
 from opendr._progress import with_progress
@@ -27,7 +27,8 @@ class NativeInference(NativeArguments):
                 an iterator such as a ``Source`` an iterator of predictions.
             arguments: Inputs by name, live parameters for this call only, and ``progress``: whether the progress of several
                 inputs is shown on standard error if that is a terminal, where their number is known or after two seconds;
-                True by default.
+                True by default. With ``ray=True``, or the address of a Ray cluster, several inputs are predicted on its workers;
+                ``ray_options`` are the resources of a task, such as ``{"num_cpus": 2}``.
 
         Returns:
             The prediction, with the time stamp and frame id of the input; a named tuple where the learner has several
@@ -40,8 +41,11 @@ class NativeInference(NativeArguments):
             opendr.InternalError: The network returned NaN or an infinite number; the message says where.
         """
         progress = arguments.pop("progress", True)
+        ray, ray_options = arguments.pop("ray", False), arguments.pop("ray_options", None)
         ports, overrides = self._arguments(inputs, arguments)
         first = ports.get(self._entry["ports"][0]["name"])
+        if ray:
+            return self._infer_on(ray, ray_options, ports, overrides, progress)
         if isinstance(first, Iterator):
             return self._with_progress(self._infer_each(ports, overrides), first, progress)
         if isinstance(first, (list, tuple)):
@@ -82,8 +86,28 @@ class NativeInference(NativeArguments):
         """
         return [self._prediction(outputs) for outputs in self._handle.push(None)]
 
+    def _infer_on(
+        self, ray: Any, ray_options: Any, ports: dict[str, Any], overrides: dict[str, Any], progress: bool
+    ) -> Any:
+        """Predicts on a Ray cluster."""
+        from opendr import _cluster
+
+        first = ports.get(self._entry["ports"][0]["name"])
+        if not isinstance(first, (list, tuple, Iterator)):
+            raise TypeError("an inference on Ray takes a list or an iterator of inputs")
+        if self._entry["stateful"]:
+            raise Unsupported(f"{type(self).__name__} has a state over its inputs, so it cannot predict them on several machines")
+        calls = self._each_ports(ports)
+        predictions = self._with_progress(_cluster.infer(self, calls, overrides, ray, ray_options), first, progress)
+        return predictions if isinstance(first, Iterator) else list(predictions)
+
     def _infer_each(self, ports: dict[str, Any], overrides: dict[str, Any]) -> Iterator[Any]:
-        """Yields the prediction for each input of the first port. Other ports that are lists or iterators advance with it;
+        """Yields the prediction for each input of the first port."""
+        for each in self._each_ports(ports):
+            yield self._infer_one(self._handle, each, overrides)
+
+    def _each_ports(self, ports: dict[str, Any]) -> Iterator[dict[str, Any]]:
+        """Yields the inputs by port name for each input of the first port. Other ports that are lists or iterators advance with it;
         init ports are given with the first input."""
         table = self._entry["ports"]
         several = {
@@ -93,7 +117,7 @@ class NativeInference(NativeArguments):
         }
         same = {name: value for name, value in ports.items() if name not in several}
         for items in zip(*several.values()):
-            yield self._infer_one(self._handle, {**same, **dict(zip(several, items))}, overrides)
+            yield {**same, **dict(zip(several, items))}
             same = {port["name"]: same[port["name"]] for port in table if port["name"] in same and not port["init"]}
 
     def _with_progress(self, predictions: Iterator[Any], inputs: Any, progress: bool) -> Iterator[Any]:

@@ -30,6 +30,8 @@ class NativeLearner(NativeBase, Learner):
         by_number: bool = False,
         resamples: int = 200,
         verbose: bool = False,
+        ray: Union[bool, str] = False,
+        ray_options: Optional[dict[str, Any]] = None,
         **metric_params: Any,
     ) -> dict[str, Any]:
         """Evaluates the learner on a data set.
@@ -48,6 +50,9 @@ class NativeLearner(NativeBase, Learner):
             by_number: Whether classes are matched by index, regardless of their names.
             resamples: Bootstrap resamples for the interval of the main number; 0 leaves it out.
             verbose: Whether to show progress and print the outcome.
+            ray: Whether samples are predicted on a Ray cluster: True for the connected one or one of this machine, or an address
+                (``"auto"`` for the running one). The data set must be at the same path on all its machines.
+            ray_options: Resources of a task on Ray, such as ``{"num_cpus": 2}``; by default one core.
             metric_params: Parameters of the metric.
 
         Returns:
@@ -70,7 +75,12 @@ class NativeLearner(NativeBase, Learner):
             "by_number": by_number,
             "resamples": resamples,
         }
-        report, text = self._handle.eval(dataset, json.dumps(options), verbose)
+        if ray:
+            from opendr import _cluster
+
+            report, text = _cluster.evaluate(self, dataset, options, ray, ray_options, verbose)
+        else:
+            report, text = self._handle.eval(dataset, json.dumps(options), verbose)
         if verbose:
             print(text, end="")
         outcome = json.loads(report)

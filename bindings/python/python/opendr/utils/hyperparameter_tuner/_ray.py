@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
-from typing import Any, Optional, Union
+from typing import Any, Optional
 
-from opendr import Unsupported
+from opendr._cluster import RayAddress, connected
 from opendr.utils.hyperparameter_tuner.trial import Job
 
 #: Seconds between two reads of the reports of running trials.
@@ -45,18 +45,10 @@ class RayTrials:
     """Runs trials on the cluster at an address, or, for True, on the connected one or a new one on this machine."""
 
     def __init__(
-        self, job: Job, slots: int, where: Union[bool, str], resources: Optional[dict[str, Any]] = None
+        self, job: Job, slots: int, where: RayAddress, resources: Optional[dict[str, Any]] = None
     ) -> None:
-        try:
-            import ray as library  # type: ignore[import-not-found,unused-ignore]
-        except ImportError as error:
-            raise Unsupported("trials on Ray need the package ray: pip install ray") from error
-        # Ray's annotations do not cover remote functions and classes.
-        ray: Any = library
-        self._ray = ray
-        self._owns_cluster = not ray.is_initialized()
-        if self._owns_cluster:
-            ray.init(address=where if isinstance(where, str) else None, log_to_driver=False)
+        self._connection = contextlib.ExitStack()
+        self._ray = ray = self._connection.enter_context(connected(where, "a trial"))
         # No retries: a trial whose worker dies has failed, and the study suggests the next one.
         options = {"max_retries": 0, **(resources or {})}
         self._task = ray.remote(_run).options(**options)
@@ -98,6 +90,5 @@ class RayTrials:
                 self._ray.cancel(reference, force=True)
         numbers, self._running = list(self._running.values()), {}
         self._ray.kill(self._mailbox)
-        if self._owns_cluster:
-            self._ray.shutdown()
+        self._connection.close()
         return numbers
