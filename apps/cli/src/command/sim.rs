@@ -24,6 +24,7 @@ Examples:
   opendr sim priors                                             list the prior controllers
   opendr sim view CartPole-v1                                   an episode of random actions, as CartPole-v1.gif
   opendr sim view CartPole-v1 --learner ppo --out cart.mp4      an episode of a policy (mp4 needs ffmpeg)
+  opendr sim view PlanarPush-v1 --controller planar-push-teacher --rate 10
   opendr sim view QuadTrack-v1 --learner td3/quad_track --online --rate 10 --env-param mass_factor=1.3
   opendr sim view CartPole-v1 --view                            episodes on a web page, in real time
   opendr sim view UavDepthCorridor-v1 --env-param max_obstacles=10 --seed 7 --out flight.png
@@ -48,6 +49,11 @@ pub fn grammar() -> Command {
                 .long("learner")
                 .value_name("LEARNER[/VARIANT]")
                 .help("Policy that acts [default: random actions]"),
+            Arg::new("controller")
+                .long("controller")
+                .value_name("PRIOR")
+                .conflicts_with("learner")
+                .help("Prior controller that acts (see \"opendr sim priors\")"),
             Arg::new("episodes")
                 .long("episodes")
                 .value_parser(value_parser!(u64).range(1..=1000))
@@ -176,12 +182,13 @@ fn view(matches: &ArgMatches) -> Result<Outcome> {
         return Ok(Outcome::Done);
     }
     let mut environment = source.make()?;
-    let mut acting: Box<dyn Controller> = match learner {
-        Some(spec) => {
+    let mut acting: Box<dyn Controller> = match (learner, matches.get_one::<String>("controller")) {
+        (Some(spec), _) => {
             let learner = loading::load(spec, &Default::default(), matches, &bar)?;
             Box::new(PolicyController::new(learner.stream()?, loading::entry(spec)?, environment.spec())?)
         }
-        None => random_controller(environment.spec().action.clone(), first),
+        (None, Some(prior)) => opendr::prior(prior)?.controller(&environment.spec().observation)?,
+        (None, None) => random_controller(environment.spec().action.clone(), first),
     };
     let film = out.map(|out| Recording::create(out, rate)).transpose()?;
     let mut screen = Screen { film, viewer, frame: Duration::from_secs_f64(1.0 / rate), due: Instant::now() };
