@@ -29,7 +29,7 @@ pub(crate) fn relative_pose(
     }
     let starts = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]];
     let agree = |pose: &Pose| pairs.iter().filter(|pair| sampson(pose, pair) < threshold).count();
-    let (mut best, mut most) = (None, 0);
+    let (mut best, mut most, mut best_score) = (None, 0, 0.0);
     for trial in 0..TRIALS {
         if most > 0 && trial > 20 && trial > 5 * super::resection::trials_for(most, pairs.len()) {
             break;
@@ -38,8 +38,10 @@ pub(crate) fn relative_pose(
         let start = Pose { position: starts[trial % starts.len()], ..Pose::IDENTITY };
         let Some(pose) = minimised(start, &chosen, f64::INFINITY) else { continue };
         let inliers = agree(&pose);
-        if inliers > most {
-            (best, most) = (Some(pose), inliers);
+        // Of the two motions that a plane allows, cameras make the one that turns less.
+        let score = inliers as f64 * (1.0 - 0.3 * pose.angle());
+        if score > best_score {
+            (best, most, best_score) = (Some(pose), inliers, score);
         }
     }
     let mut pose = best?;

@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result};
 
 use super::tum::{is_comment, numbers};
 use super::{Stamped, Trajectory};
-use crate::geometry::Pose;
+use crate::geometry::{Pose, length};
 
 impl Trajectory {
     /// Reads a trajectory in KITTI's format. Its poses have no times: they are `rate` per second.
@@ -25,7 +25,8 @@ impl Trajectory {
             let rows: [[f64; 4]; 3] = std::array::from_fn(|row| std::array::from_fn(|at| values[4 * row + at]));
             let pose = Pose::from_rows(rows);
             let differs = pose.rows().as_flattened().iter().zip(&values).any(|(own, read)| (own - read).abs() > 0.01);
-            if differs {
+            let is_unit = |row: [f64; 3]| (length(row) - 1.0).abs() < 0.01;
+            if differs || !pose.rotation.into_iter().all(is_unit) {
                 return Err(Error::format(format!("line {number}: the first three columns are no rotation matrix")));
             }
             poses.push(Stamped { time: poses.len() as f64 / rate, pose });
