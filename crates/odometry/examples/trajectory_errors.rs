@@ -18,12 +18,15 @@ fn main() -> Result<()> {
     };
     let (truth, estimate) = (read(truth)?, read(estimate)?);
     let (truth, estimate) = truth.associated(&estimate, 0.01)?;
-    let number = |text: &String| text.parse::<f64>().map_err(|_| Error::invalid_input(format!("{text} is no number")));
+    let number =
+        |text: &String| text.parse::<f64>().map_err(|_| Error::invalid_input(format!("{text} is no number")));
     let numbers = rest.iter().map(number).collect::<Result<Vec<f64>>>()?;
     let step = numbers.first().map_or(1, |step| *step as usize);
-    let absolute = |alignment| absolute_errors(&truth, &estimate, alignment).map(|errors| {
+    let absolute = |alignment| {
+        absolute_errors(&truth, &estimate, alignment).map(|errors| {
         json!({"rmse": errors.rmse, "mean": errors.mean, "median": errors.median, "max": errors.largest})
-    });
+    })
+    };
     let relative = relative_errors(&truth, &estimate, step)?;
     let drift = match numbers.get(1..) {
         Some(lengths @ [_, ..]) => {

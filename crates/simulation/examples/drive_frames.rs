@@ -10,7 +10,8 @@ fn main() -> Result<()> {
     let mut number = |default| arguments.next().and_then(|text| text.parse().ok()).unwrap_or(default);
     let (seed, every) = (number(0), number(50));
     std::fs::create_dir_all(&folder)?;
-    for (name, course) in [("straight", Course::Straight), ("curves", Course::Curves), ("loop", Course::Loop)] {
+    for (name, course) in [("straight", Course::Straight), ("curves", Course::Curves), ("loop", Course::Loop)]
+    {
         let drive = Drive::new(&DriveOptions { seed: seed as u64, course, ..DriveOptions::default() })?;
         println!("{name}: {} frames", drive.frames());
         for frame in (0..drive.frames()).step_by(every.max(1)) {

@@ -24,7 +24,9 @@ fn main() -> Result<()> {
     let picture = arguments.next().map(PathBuf::from);
     println!("course   seed camera way_m drift_% rot_deg/m  ATE_m  closed_m loops  lost  fps_1 fps_2 cpu_ms");
     for seed in 1..=seeds {
-        for (name, course) in [("straight", Course::Straight), ("curves", Course::Curves), ("loop", Course::Loop)] {
+        for (name, course) in
+            [("straight", Course::Straight), ("curves", Course::Curves), ("loop", Course::Loop)]
+        {
             let drive = Drive::new(&DriveOptions { seed, course, ..DriveOptions::default() })?;
             let outcomes = run(&drive, &LENGTHS)?;
             outcomes.iter().for_each(|outcome| print_row(name, seed, outcome));
@@ -64,5 +66,6 @@ fn print_row(course: &str, seed: u64, outcome: &Outcome) {
 fn peak_memory() -> usize {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
-    line.and_then(|line| line.split_whitespace().next()?.parse::<usize>().ok()).map_or(0, |kilobytes| kilobytes / 1024)
+    line.and_then(|line| line.split_whitespace().next()?.parse::<usize>().ok())
+        .map_or(0, |kilobytes| kilobytes / 1024)
 }

@@ -24,7 +24,9 @@ pub fn draw_map(trajectories: &[&Trajectory; 3], path: &Path) -> Result<()> {
         }
     }
     let scale = (SIDE as f32 - 2.0 * MARGIN) / (high[0] - low[0]).max(high[1] - low[1]).max(1.0) as f32;
-    let place = |x: f64, y: f64| [MARGIN + scale * (x - low[0]) as f32, SIDE as f32 - MARGIN - scale * (y - low[1]) as f32];
+    let place = |x: f64, y: f64| {
+        [MARGIN + scale * (x - low[0]) as f32, SIDE as f32 - MARGIN - scale * (y - low[1]) as f32]
+    };
     let mut canvas = Canvas::over(&mut image);
     for line in 0..((high[0] - low[0]).max(high[1] - low[1]) / 10.0) as usize + 1 {
         let at = 10.0 * line as f64;

@@ -60,10 +60,13 @@ pub fn run(drive: &Drive, lengths: &[f64]) -> Result<Vec<Outcome>> {
     }
     let truth = Trajectory::new(truth)?;
     let frames = drive.frames() as f64;
-    runners.chunks_mut(2).map(|pair| {
-        let rates = [0, 1].map(|at| frames / pair[at].seconds);
-        pair[0].outcome(&truth, lengths, rates, frames)
-    }).collect()
+    runners
+        .chunks_mut(2)
+        .map(|pair| {
+            let rates = [0, 1].map(|at| frames / pair[at].seconds);
+            pair[0].outcome(&truth, lengths, rates, frames)
+        })
+        .collect()
 }
 
 impl Runner {
@@ -97,7 +100,13 @@ impl Runner {
         Ok(())
     }
 
-    fn outcome(&mut self, truth: &Trajectory, lengths: &[f64], rates: [f64; 2], frames: f64) -> Result<Outcome> {
+    fn outcome(
+        &mut self,
+        truth: &Trajectory,
+        lengths: &[f64],
+        rates: [f64; 2],
+        frames: f64,
+    ) -> Result<Outcome> {
         let alignment = if self.is_metric { Alignment::Rigid } else { Alignment::Scaled };
         let compare = |odometry: &VisualOdometry| -> Result<(Trajectory, Trajectory)> {
             let (truth, estimate) = truth.associated(&odometry.trajectory(), 1e-3)?;
@@ -108,7 +117,8 @@ impl Runner {
         let drift = kitti_drift(&associated, &before, lengths)?;
         let loops = self.odometry.close_loops()?.loops;
         let (_, after) = compare(&self.odometry)?;
-        let error = |aligned| absolute_errors(&associated, aligned, Alignment::None).map(|errors| errors.rmse);
+        let error =
+            |aligned| absolute_errors(&associated, aligned, Alignment::None).map(|errors| errors.rmse);
         let errors = [error(&before)?, error(&after)?];
         Ok(Outcome {
             kind: self.kind,

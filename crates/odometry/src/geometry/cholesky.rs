@@ -7,8 +7,7 @@ pub(crate) fn solve_in_place(matrix: &mut [f64], right: &mut [f64]) -> bool {
     for row in 0..size {
         for column in 0..=row {
             let (begin, other) = (row * size, column * size);
-            let sum: f64 =
-                (0..column).map(|at| matrix[begin + at] * matrix[other + at]).sum();
+            let sum: f64 = (0..column).map(|at| matrix[begin + at] * matrix[other + at]).sum();
             let rest = matrix[begin + column] - sum;
             if row == column {
                 if rest.is_nan() || rest <= 0.0 {

@@ -5,8 +5,10 @@ pub(super) fn eigen<const N: usize>(mut matrix: [[f64; N]; N]) -> ([f64; N], [[f
     let mut vectors = [[0.0; N]; N];
     (0..N).for_each(|at| vectors[at][at] = 1.0);
     for _ in 0..50 {
-        let off: f64 = (0..N).flat_map(|row| (0..row).map(move |column| (row, column)))
-            .map(|(row, column)| matrix[row][column].powi(2)).sum();
+        let off: f64 = (0..N)
+            .flat_map(|row| (0..row).map(move |column| (row, column)))
+            .map(|(row, column)| matrix[row][column].powi(2))
+            .sum();
         if off < 1e-300 {
             break;
         }

@@ -51,7 +51,8 @@ pub(crate) fn relative_pose(
     // Of the two directions of the translation, points lie ahead of both views with one.
     let backwards = Pose { position: scaled(pose.position, -1.0), ..pose };
     let ahead = |pose: &Pose| {
-        let is_ahead = |pair: &&TwoViews| triangulate([(&Pose::IDENTITY, pair[0]), (pose, pair[1])]).is_some();
+        let is_ahead =
+            |pair: &&TwoViews| triangulate([(&Pose::IDENTITY, pair[0]), (pose, pair[1])]).is_some();
         pairs.iter().filter(|pair| sampson(pose, pair) < threshold).filter(is_ahead).count()
     };
     if ahead(&backwards) > ahead(&pose) {
@@ -59,7 +60,8 @@ pub(crate) fn relative_pose(
     }
     agrees.clear();
     agrees.extend(pairs.iter().map(|pair| {
-        sampson(&pose, pair) < threshold && triangulate([(&Pose::IDENTITY, pair[0]), (&pose, pair[1])]).is_some()
+        sampson(&pose, pair) < threshold
+            && triangulate([(&Pose::IDENTITY, pair[0]), (&pose, pair[1])]).is_some()
     }));
     (agrees.iter().filter(|agrees| **agrees).count() >= least).then_some(pose)
 }
@@ -98,8 +100,14 @@ fn minimised(mut pose: Pose, pairs: &[TwoViews], threshold: f64) -> Option<Pose>
             // A rotation w of the second view moves its ray by w x rotated.
             let by_rotation = cross(rotated, back);
             let by_shift = cross(rotated, *first);
-            let slopes = [by_rotation[0], by_rotation[1], by_rotation[2], dot(by_shift, axes[0]), dot(by_shift, axes[1])]
-                .map(|part| part / size.max(1e-12));
+            let slopes = [
+                by_rotation[0],
+                by_rotation[1],
+                by_rotation[2],
+                dot(by_shift, axes[0]),
+                dot(by_shift, axes[1]),
+            ]
+            .map(|part| part / size.max(1e-12));
             for row in 0..5 {
                 gradient[row] += weight * slopes[row] * residual;
                 (0..=row).for_each(|column| normal[row][column] += weight * slopes[row] * slopes[column]);

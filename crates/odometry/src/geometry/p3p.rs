@@ -1,16 +1,17 @@
 //! Pose of a camera from three points.
 
-use super::pose::Pose;
 use super::polynomial::real_roots;
+use super::pose::Pose;
 use super::similarity::Similarity3;
-use super::vector::{Vector, dot, distance, scaled};
+use super::vector::{Vector, distance, dot, scaled};
 
 /// Writes the poses world_from_camera in which the three world points lie on the three unit rays, and returns their number.
 ///
 /// Grunert's solution (1841) as in Haralick et al., Review and analysis of solutions of the three point perspective pose estimation
 /// problem, 1994; the pose follows from the distances by Horn's alignment.
 pub(super) fn p3p(points: &[Vector; 3], rays: &[Vector; 3], poses: &mut [Pose; 4]) -> usize {
-    let [a, b, c] = [distance(points[1], points[2]), distance(points[0], points[2]), distance(points[0], points[1])];
+    let [a, b, c] =
+        [distance(points[1], points[2]), distance(points[0], points[2]), distance(points[0], points[1])];
     let [alpha, beta, gamma] = [dot(rays[1], rays[2]), dot(rays[0], rays[2]), dot(rays[0], rays[1])];
     if a.min(b).min(c) < 1e-9 {
         return 0;

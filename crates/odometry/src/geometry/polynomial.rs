@@ -61,7 +61,11 @@ fn root_between(coefficients: &[f64], mut low: f64, mut high: f64) -> Option<f64
         if level == 0.0 {
             return Some(x);
         }
-        if (level < 0.0) == (at_low < 0.0) { low = x } else { high = x }
+        if (level < 0.0) == (at_low < 0.0) {
+            low = x
+        } else {
+            high = x
+        }
         let newton = x - level / slope;
         let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
         if (next - x).abs() <= 1e-14 * x.abs().max(1e-3) {

@@ -29,9 +29,8 @@ pub(crate) fn resect(
 ) -> bool {
     const MOST: usize = 300;
     const ENOUGH: usize = 6;
-    let agree = |pose: &Pose, limit: f64| {
-        sights.iter().filter(|sight| is_near(camera, pose, sight, limit)).count()
-    };
+    let agree =
+        |pose: &Pose, limit: f64| sights.iter().filter(|sight| is_near(camera, pose, sight, limit)).count();
     let (mut best, mut most) = (None, 0);
     // A guess is a prediction, which may be some pixels off.
     if let Some(refined) = guess.and_then(|guess| {

@@ -24,9 +24,8 @@ impl Similarity3 {
         if count < 3 || count != to.len() {
             return None;
         }
-        let middle = |points: &[Vector]| {
-            scaled(points.iter().copied().fold([0.0; 3], plus), 1.0 / count as f64)
-        };
+        let middle =
+            |points: &[Vector]| scaled(points.iter().copied().fold([0.0; 3], plus), 1.0 / count as f64);
         let (from_middle, to_middle) = (middle(from), middle(to));
         let (mut moments, mut spread) = ([[0.0; 3]; 3], 0.0);
         for (a, b) in from.iter().zip(to) {
@@ -48,15 +47,20 @@ impl Similarity3 {
         let [w, x, y, z] = vectors[largest];
         let rotation = Pose::from_quaternion([0.0; 3], [x, y, z, w]).rotation;
         let scale = if with_scale {
-            let trace: f64 = from.iter().zip(to)
-                .map(|(a, b)| dot(minus(*b, to_middle), times(&rotation, minus(*a, from_middle)))).sum();
+            let trace: f64 = from
+                .iter()
+                .zip(to)
+                .map(|(a, b)| dot(minus(*b, to_middle), times(&rotation, minus(*a, from_middle))))
+                .sum();
             trace / spread
         } else {
             1.0
         };
         let position = minus(to_middle, scaled(times(&rotation, from_middle), scale));
         let is_finite = scale.is_finite() && scale > 0.0;
-        is_finite.then_some(Self { scale, pose: Pose { rotation, position } }).filter(|found| found.pose.is_finite())
+        is_finite
+            .then_some(Self { scale, pose: Pose { rotation, position } })
+            .filter(|found| found.pose.is_finite())
     }
 
     /// Returns the image of a point.

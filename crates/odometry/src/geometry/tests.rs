@@ -13,7 +13,12 @@ fn random_pose(random: &mut Random, turn: f32, shift: f32) -> Pose {
 }
 
 fn camera() -> PinholeCamera {
-    PinholeCamera { size: [640, 480], focal_length: [400.0; 2], principal_point: [319.5, 239.5], baseline: 0.4 }
+    PinholeCamera {
+        size: [640, 480],
+        focal_length: [400.0; 2],
+        principal_point: [319.5, 239.5],
+        baseline: 0.4,
+    }
 }
 
 fn assert_near(a: &Pose, b: &Pose, tolerance: f64) {
@@ -97,7 +102,10 @@ fn three_points_give_the_pose_among_up_to_four() {
         let world = chosen.map(|point| pose.point(point));
         let mut poses = [Pose::IDENTITY; 4];
         let count = p3p(&world, &rays, &mut poses);
-        let best = poses[..count].iter().map(|found| distance(found.position, pose.position)).fold(f64::INFINITY, f64::min);
+        let best = poses[..count]
+            .iter()
+            .map(|found| distance(found.position, pose.position))
+            .fold(f64::INFINITY, f64::min);
         missed += usize::from(best > 1e-4);
     }
     assert!(missed < 10, "{missed}");

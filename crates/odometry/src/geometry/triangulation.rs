@@ -1,7 +1,7 @@
 //! Points from two views.
 
 use super::pose::Pose;
-use super::vector::{Vector, along, dot, minus, scaled, plus, unit, length};
+use super::vector::{Vector, along, dot, length, minus, plus, scaled, unit};
 
 /// Returns the point nearest to both rays, in the world, with the cosine of the angle between them: the middle of their shortest
 /// connection. `None` for parallel rays and for a point behind a camera.

@@ -17,7 +17,7 @@ const HALF: usize = 3;
 /// Distance of corners from the border: the window of the optical flow fits on the level of half the size.
 const BORDER: usize = 20;
 /// Smaller eigenvalue, per pixel of the window, below which there is only noise: squares of grey levels per pixel.
-const FLOOR: f32 = 14.0;
+const FLOOR: f32 = 8.0;
 
 impl CornerFinder {
     /// Appends corners to `corners` until there is one in each cell of `side` pixels, or `most`; cells of `taken` are left out.
@@ -29,7 +29,8 @@ impl CornerFinder {
         most: usize,
         corners: &mut Vec<[f32; 2]>,
     ) {
-        let [columns, rows] = [level.width, level.height].map(|pixels| pixels.saturating_sub(2 * BORDER) / side);
+        let [columns, rows] =
+            [level.width, level.height].map(|pixels| pixels.saturating_sub(2 * BORDER) / side);
         self.occupied.clear();
         self.occupied.resize(columns * rows, false);
         for [x, y] in taken {
@@ -40,7 +41,8 @@ impl CornerFinder {
         }
         // Cells are visited in an order that spreads a limited number over the image.
         let cells = columns * rows;
-        let stride = (0..).map(|more| cells * 5 / 13 + 1 + more).find(|stride| divisor(*stride, cells.max(1)) == 1);
+        let stride =
+            (0..).map(|more| cells * 5 / 13 + 1 + more).find(|stride| divisor(*stride, cells.max(1)) == 1);
         let stride = stride.unwrap_or(1);
         for number in 0..cells {
             if corners.len() >= most {

@@ -17,7 +17,9 @@ pub(crate) fn find_disparity(left: &Pyramid, right: &Pyramid, corner: [f32; 2], 
     if !fits {
         return None;
     }
-    let row = |level: &super::pyramid::Level, y: usize, x: usize| (y * level.width + x - HALF)..(y * level.width + x + HALF + 1);
+    let row = |level: &super::pyramid::Level, y: usize, x: usize| {
+        (y * level.width + x - HALF)..(y * level.width + x + HALF + 1)
+    };
     let cost = |shift: usize| {
         let mut lanes = [0.0_f32; 2 * HALF + 1];
         for at in y - HALF..=y + HALF {

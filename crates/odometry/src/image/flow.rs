@@ -41,7 +41,13 @@ pub(crate) fn follow(
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn follow_avx2(from: &Pyramid, to: &Pyramid, place: [f32; 2], guess: [f32; 2], coarsest: usize) -> Option<Match> {
+fn follow_avx2(
+    from: &Pyramid,
+    to: &Pyramid,
+    place: [f32; 2],
+    guess: [f32; 2],
+    coarsest: usize,
+) -> Option<Match> {
     search(from, to, place, guess, coarsest)
 }
 
@@ -158,9 +164,10 @@ fn corner(level: &Level, place: [f32; 2], half: usize, side: usize) -> Option<(u
 
 #[inline(always)]
 fn blend<const N: usize>(level: &Level, begin: usize, [a, b, c, d]: [f32; 4], row: &mut [f32]) {
-    let (Some(above), Some(below)) =
-        (level.luminance.get(begin..begin + N + 1), level.luminance.get(begin + level.width..begin + level.width + N + 1))
-    else {
+    let (Some(above), Some(below)) = (
+        level.luminance.get(begin..begin + N + 1),
+        level.luminance.get(begin + level.width..begin + level.width + N + 1),
+    ) else {
         return;
     };
     for x in 0..N {

@@ -10,7 +10,8 @@ fn brightness(x: f64, y: f64) -> f64 {
 
 fn pyramid(dx: f64, dy: f64, brighter: f64) -> Pyramid {
     let (width, height) = (320, 240);
-    let level = |at: usize| (brightness((at % width) as f64 - dx, (at / width) as f64 - dy) + brighter).round() as u8;
+    let level =
+        |at: usize| (brightness((at % width) as f64 - dx, (at / width) as f64 - dy) + brighter).round() as u8;
     let bytes: Vec<u8> = (0..width * height).map(level).collect();
     let image = Image::new(bytes, width, height, PixelFormat::Grey, Layout::Hwc).unwrap();
     let mut pyramid = Pyramid::default();

@@ -1,8 +1,8 @@
 //! Closing of loops: recognition of places and optimisation of the pose graph.
 
 mod envelope;
-mod pose_graph;
 mod places;
+mod pose_graph;
 #[cfg(test)]
 mod tests;
 

@@ -35,7 +35,14 @@ impl Places {
 
     /// Writes up to `most` places below `before` that share most words with the descriptors, best first. Places near a better one, less
     /// than `apart` numbers away, are left out.
-    pub fn similar(&mut self, descriptors: &[Descriptor], before: usize, most: usize, apart: usize, found: &mut Vec<usize>) {
+    pub fn similar(
+        &mut self,
+        descriptors: &[Descriptor],
+        before: usize,
+        most: usize,
+        apart: usize,
+        found: &mut Vec<usize>,
+    ) {
         found.clear();
         self.votes.clear();
         self.votes.resize(before.min(self.sizes.len()), 0.0);

@@ -67,7 +67,9 @@ impl PoseGraph {
                 continue;
             }
             work.moved.clear();
-            work.moved.extend(self.nodes.iter().zip(work.right.chunks_exact(SIZE)).map(|(node, step)| moved(node, step)));
+            work.moved.extend(
+                self.nodes.iter().zip(work.right.chunks_exact(SIZE)).map(|(node, step)| moved(node, step)),
+            );
             let next = self.error(&work.moved);
             if next.is_nan() || next > error {
                 damping *= 10.0;
@@ -88,7 +90,14 @@ impl PoseGraph {
         for (number, edge) in self.edges.iter().enumerate() {
             let [a, b] = edge.between;
             let is_positive = edge.deviations.iter().all(|part| *part > 0.0 && part.is_finite());
-            if a >= count || b >= count || a == b || !is_positive || !edge.motion.pose.is_finite() || edge.motion.scale.is_nan() || edge.motion.scale <= 0.0 {
+            if a >= count
+                || b >= count
+                || a == b
+                || !is_positive
+                || !edge.motion.pose.is_finite()
+                || edge.motion.scale.is_nan()
+                || edge.motion.scale <= 0.0
+            {
                 return Err(Error::invalid_input(format!(
                     "edge {number} of the pose graph joins {a} and {b} of {count} poses with deviations {:?} and scale {}; join two different poses with positive numbers",
                     edge.deviations, edge.motion.scale
@@ -109,10 +118,13 @@ impl PoseGraph {
     }
 
     fn error(&self, nodes: &[Similarity3]) -> f64 {
-        self.edges.iter().map(|edge| {
-            let square = squared(&edge.residual(nodes));
-            if edge.is_doubtful { DOUBT * (1.0 + square / DOUBT).ln() } else { square }
-        }).sum()
+        self.edges
+            .iter()
+            .map(|edge| {
+                let square = squared(&edge.residual(nodes));
+                if edge.is_doubtful { DOUBT * (1.0 + square / DOUBT).ln() } else { square }
+            })
+            .sum()
     }
 
     fn assemble(&self, firsts: &[usize], damping: f64, work: &mut Work) {

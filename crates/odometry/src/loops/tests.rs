@@ -45,7 +45,8 @@ fn loop_edge(truth: &[Similarity3], first: usize, second: usize) -> Edge {
 fn envelopes_solve_sparse_systems() {
     let mut random = Random::new(1);
     let size = 40;
-    let firsts: Vec<usize> = (0..size).map(|row: usize| if row == 33 { 0 } else { row.saturating_sub(3) }).collect();
+    let firsts: Vec<usize> =
+        (0..size).map(|row: usize| if row == 33 { 0 } else { row.saturating_sub(3) }).collect();
     let mut dense = vec![0.0; size * size];
     let mut envelope = Envelope::default();
     envelope.reshape(&firsts);
@@ -127,14 +128,17 @@ fn the_place_with_the_same_descriptors_is_most_similar() {
         all.push(descriptors);
     }
     // A tenth of the bits of each descriptor is wrong.
-    let again: Vec<_> = all[17].iter().map(|descriptor| {
-        let mut noisy = *descriptor;
-        (0..26).for_each(|_| {
-            let bit = random.below(256);
-            noisy[bit / 64] ^= 1 << (bit % 64);
-        });
-        noisy
-    }).collect();
+    let again: Vec<_> = all[17]
+        .iter()
+        .map(|descriptor| {
+            let mut noisy = *descriptor;
+            (0..26).for_each(|_| {
+                let bit = random.below(256);
+                noisy[bit / 64] ^= 1 << (bit % 64);
+            });
+            noisy
+        })
+        .collect();
     let mut found = Vec::new();
     places.similar(&again, 50, 3, 2, &mut found);
     assert_eq!(found[0], 17);

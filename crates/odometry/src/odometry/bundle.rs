@@ -44,12 +44,25 @@ struct Own {
 
 impl Bundle {
     /// Refines the poses of `frames` but the first `fixed`, and the points of landmarks that two of them saw.
-    pub fn refine(&mut self, camera: &PinholeCamera, frames: &mut [WindowFrame], landmarks: &mut [Landmark], fixed: usize) {
+    pub fn refine(
+        &mut self,
+        camera: &PinholeCamera,
+        frames: &mut [WindowFrame],
+        landmarks: &mut [Landmark],
+        fixed: usize,
+    ) {
         let oldest = frames.first().map_or(0, |frame| frame.key);
         self.used.clear();
-        self.used.extend(landmarks.iter().enumerate().filter(|(_, landmark)| {
-            landmark.point.is_some() && landmark.seen().iter().filter(|seen| seen.key >= oldest).count() >= 2
-        }).map(|(at, _)| at));
+        self.used.extend(
+            landmarks
+                .iter()
+                .enumerate()
+                .filter(|(_, landmark)| {
+                    landmark.point.is_some()
+                        && landmark.seen().iter().filter(|seen| seen.key >= oldest).count() >= 2
+                })
+                .map(|(at, _)| at),
+        );
         if frames.len() <= fixed || self.used.len() < 10 {
             return;
         }
@@ -106,7 +119,8 @@ impl Bundle {
             let landmark = &landmarks[*at];
             let Some(point) = point(number, landmark) else { continue };
             for (frame, seen) in matched(frames, landmark.seen()) {
-                let error = residual(camera, &frames[frame].pose, point, seen).map_or(400.0, |[x, y, z]| (x * x + y * y + z * z).sqrt());
+                let error = residual(camera, &frames[frame].pose, point, seen)
+                    .map_or(400.0, |[x, y, z]| (x * x + y * y + z * z).sqrt());
                 cost += if error > HUBER { HUBER * (2.0 * error - HUBER) } else { error * error };
             }
         }
@@ -114,7 +128,14 @@ impl Bundle {
     }
 
     /// Accumulates the equations of the poses.
-    fn eliminate(&mut self, camera: &PinholeCamera, frames: &[WindowFrame], landmarks: &[Landmark], fixed: usize, damping: f64) {
+    fn eliminate(
+        &mut self,
+        camera: &PinholeCamera,
+        frames: &[WindowFrame],
+        landmarks: &[Landmark],
+        fixed: usize,
+        damping: f64,
+    ) {
         let size = self.right.len();
         for at in &self.used {
             let landmark = &landmarks[*at];
@@ -137,7 +158,8 @@ impl Bundle {
                     };
                     self.right[begin + row] -= product(&|part| linear.residual[part]);
                     for column in 0..=row {
-                        self.normal[(begin + row) * size + begin + column] += product(&|part| linear.by_pose[part][column]);
+                        self.normal[(begin + row) * size + begin + column] +=
+                            product(&|part| linear.by_pose[part][column]);
                     }
                     for column in 0..3 {
                         crossed[count][row][column] = product(&|part| linear.by_point[part][column]);
@@ -156,7 +178,8 @@ impl Bundle {
                     self.right[rows[one] + row] -= eliminated;
                     for other in 0..=one {
                         for column in 0..6 {
-                            let product: f64 = (0..3).map(|part| times[row][part] * crossed[other][column][part]).sum();
+                            let product: f64 =
+                                (0..3).map(|part| times[row][part] * crossed[other][column][part]).sum();
                             self.normal[(rows[one] + row) * size + rows[other] + column] -= product;
                         }
                     }
@@ -166,7 +189,14 @@ impl Bundle {
     }
 
     /// Computes the moved poses and points from the solved equations.
-    fn substitute(&mut self, camera: &PinholeCamera, frames: &[WindowFrame], landmarks: &[Landmark], fixed: usize, damping: f64) {
+    fn substitute(
+        &mut self,
+        camera: &PinholeCamera,
+        frames: &[WindowFrame],
+        landmarks: &[Landmark],
+        fixed: usize,
+        damping: f64,
+    ) {
         self.poses.clear();
         for (number, frame) in frames.iter().enumerate() {
             let mut pose = frame.pose;
@@ -209,7 +239,9 @@ impl Own {
             let slopes = linear.by_point[part];
             for row in 0..3 {
                 self.right[row] -= linear.weight * slopes[row] * linear.residual[part];
-                (0..3).for_each(|column| self.normal[row][column] += linear.weight * slopes[row] * slopes[column]);
+                (0..3).for_each(|column| {
+                    self.normal[row][column] += linear.weight * slopes[row] * slopes[column]
+                });
             }
         }
     }
@@ -217,7 +249,8 @@ impl Own {
     fn inverse(&self, damping: f64) -> Option<[[f64; 3]; 3]> {
         let mut m = self.normal;
         (0..3).for_each(|at| m[at][at] += damping * m[at][at] + 1e-9);
-        let minor = |r: [usize; 2], c: [usize; 2]| m[r[0]][c[0]] * m[r[1]][c[1]] - m[r[0]][c[1]] * m[r[1]][c[0]];
+        let minor =
+            |r: [usize; 2], c: [usize; 2]| m[r[0]][c[0]] * m[r[1]][c[1]] - m[r[0]][c[1]] * m[r[1]][c[0]];
         let cofactors = [
             [minor([1, 2], [1, 2]), -minor([0, 2], [1, 2]), minor([0, 1], [1, 2])],
             [-minor([1, 2], [0, 2]), minor([0, 2], [0, 2]), -minor([0, 1], [0, 2])],
@@ -229,16 +262,25 @@ impl Own {
 }
 
 /// Returns the frames of the window with the observations of theirs.
-fn matched<'a>(frames: &'a [WindowFrame], seen: &'a [Observation]) -> impl Iterator<Item = (usize, &'a Observation)> {
+fn matched<'a>(
+    frames: &'a [WindowFrame],
+    seen: &'a [Observation],
+) -> impl Iterator<Item = (usize, &'a Observation)> {
     seen.iter().filter_map(|seen| Some((frames.iter().position(|frame| frame.key == seen.key)?, seen)))
 }
 
 /// Returns the error in pixels: column, row, and column in the right image; `None` behind the camera.
-pub(super) fn residual(camera: &PinholeCamera, pose: &Pose, point: Vector, seen: &Observation) -> Option<[f64; 3]> {
+pub(super) fn residual(
+    camera: &PinholeCamera,
+    pose: &Pose,
+    point: Vector,
+    seen: &Observation,
+) -> Option<[f64; 3]> {
     let point = pose.point_in_frame(point);
     let [u, v] = camera.project(point)?;
     let [x, y] = seen.pixel.map(f64::from);
-    let right = if seen.right.is_nan() { 0.0 } else { u - camera.disparity(point[2]) - f64::from(seen.right) };
+    let right =
+        if seen.right.is_nan() { 0.0 } else { u - camera.disparity(point[2]) - f64::from(seen.right) };
     Some([u - x, v - y, right])
 }
 

@@ -99,7 +99,9 @@ pub(super) fn depth_at(depth: &Image, place: [f32; 2]) -> Option<f64> {
         Pixels::U8(_) => 0.0,
     };
     let around = [at(x, y), at(x - 1, y), at(x + 1, y), at(x, y - 1), at(x, y + 1)];
-    let (low, high) = around.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), depth| (low.min(*depth), high.max(*depth)));
+    let (low, high) = around
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(low, high), depth| (low.min(*depth), high.max(*depth)));
     let mean = around.iter().sum::<f64>() / 5.0;
     (low > 0.0 && high.is_finite() && high - low < 0.15 * low).then_some(mean)
 }

@@ -41,8 +41,10 @@ impl VisualOdometry {
             self.archive.similar(&view, number.saturating_sub(self.params.loop_gap), &mut candidates);
             for key in candidates.drain(..) {
                 let threshold = 2.0 * self.params.threshold;
-                let place = self.archive.recognise(&self.camera, &view, key, threshold, self.params.loop_inliers);
-                self.loops.extend(place.map(|place| self.loop_edge(key, number, &place.motion, &place.pairs)));
+                let place =
+                    self.archive.recognise(&self.camera, &view, key, threshold, self.params.loop_inliers);
+                self.loops
+                    .extend(place.map(|place| self.loop_edge(key, number, &place.motion, &place.pairs)));
             }
             self.archive.records[number].view = view;
         }
@@ -59,11 +61,14 @@ impl VisualOdometry {
         let [old, new] = [key, number].map(|at| &self.archive.records[at].points);
         let mut depths: Vec<f64> = pairs.iter().map(|[own, _]| f64::from(old[*own][2])).collect();
         depths.sort_by(f64::total_cmp);
-        let mut scales: Vec<f64> = pairs.iter().filter_map(|[own, its]| {
-            let depth = motion.point_in_frame(old[*own].map(f64::from))[2];
-            let scale = depth / f64::from(new[*its][2]);
-            (scale.is_finite() && scale > 0.0).then_some(scale)
-        }).collect();
+        let mut scales: Vec<f64> = pairs
+            .iter()
+            .filter_map(|[own, its]| {
+                let depth = motion.point_in_frame(old[*own].map(f64::from))[2];
+                let scale = depth / f64::from(new[*its][2]);
+                (scale.is_finite() && scale > 0.0).then_some(scale)
+            })
+            .collect();
         scales.sort_by(f64::total_cmp);
         let is_scaled = !self.observes_scale() && scales.len() >= 8;
         let scale = if is_scaled { scales[scales.len() / 2] } else { 1.0 };

@@ -11,7 +11,7 @@ pub(super) fn height_above_ground(
     landmarks: &[Landmark],
     heights: &mut Vec<f64>,
 ) -> Option<f64> {
-    const LEAST: usize = 10;
+    const LEAST: usize = 7;
     const SPREAD: f64 = 0.05;
     heights.clear();
     let low = camera.principal_point[1] + 0.12 * camera.size[1] as f64;

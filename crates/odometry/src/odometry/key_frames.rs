@@ -3,7 +3,6 @@
 use super::archive::KeyRecord;
 use super::bundle::{WindowFrame, residual};
 use super::camera_frame::{CameraFrame, depth_at};
-use super::ground::height_above_ground;
 use super::landmark::{Landmark, Observation};
 use super::visual_odometry::VisualOdometry;
 use crate::geometry::{Similarity3, triangulate};
@@ -72,26 +71,26 @@ impl VisualOdometry {
         for frame in &self.window {
             self.archive.records[frame.key as usize].pose.pose = frame.pose;
         }
-        if let Some(height) = self.known_height()
-            && self.window.len() > 2
-            && let Some(found) = height_above_ground(&self.camera, &self.pose, &self.landmarks, &mut self.heights)
-        {
-            // A fraction of the error, since pitch and slopes disturb single heights.
-            self.rescale((height / found).clamp(0.8, 1.25).powf(0.15));
+        if self.window.len() > 1 {
+            self.correct_scale();
         }
-        self.landmarks_at_key = self.landmarks.iter().filter(|landmark| landmark.is_followed && landmark.point.is_some()).count();
+        self.landmarks_at_key =
+            self.landmarks.iter().filter(|landmark| landmark.is_followed && landmark.point.is_some()).count();
         self.frames_since_key = 0;
     }
 
     /// Returns the points, in the camera's frame, of followed landmarks at these places.
     fn points_of(&self, corners: &[[f32; 2]]) -> Vec<[f32; 3]> {
         let mut followed = self.landmarks.iter().filter(|landmark| landmark.is_followed);
-        corners.iter().map(|corner| {
-            let landmark = followed.find(|landmark| landmark.place == *corner);
-            landmark.and_then(|landmark| landmark.point).map_or([f32::NAN; 3], |point| {
-                self.pose.point_in_frame(point).map(|part| part as f32)
+        corners
+            .iter()
+            .map(|corner| {
+                let landmark = followed.find(|landmark| landmark.place == *corner);
+                landmark
+                    .and_then(|landmark| landmark.point)
+                    .map_or([f32::NAN; 3], |point| self.pose.point_in_frame(point).map(|part| part as f32))
             })
-        }).collect()
+            .collect()
     }
 
     /// Returns the column of a followed landmark in the right image; NaN where it is unknown.
@@ -133,8 +132,12 @@ impl VisualOdometry {
     /// Computes the points of landmarks that have none: from the newest disparity, or from the first and the last key frame that saw them.
     fn locate_landmarks(&mut self) {
         for landmark in self.landmarks.iter_mut().filter(|landmark| landmark.point.is_none()) {
-            let (Some(first), Some(last)) = (landmark.seen().first(), landmark.seen().last()) else { continue };
-            let pose_of = |seen: &Observation| self.window.iter().find(|frame| frame.key == seen.key).map(|frame| frame.pose);
+            let (Some(first), Some(last)) = (landmark.seen().first(), landmark.seen().last()) else {
+                continue;
+            };
+            let pose_of = |seen: &Observation| {
+                self.window.iter().find(|frame| frame.key == seen.key).map(|frame| frame.pose)
+            };
             let (Some(one), Some(other)) = (pose_of(first), pose_of(last)) else { continue };
             let pixel = |seen: &Observation| seen.pixel.map(f64::from);
             let disparity = f64::from(last.pixel[0] - last.right);
@@ -144,8 +147,13 @@ impl VisualOdometry {
                 continue;
             }
             let rays = [(&one, self.camera.ray(pixel(first))), (&other, self.camera.ray(pixel(last)))];
-            let Some((point, cosine)) = triangulate(rays).filter(|(_, cosine)| *cosine < NARROW) else { continue };
-            let fits = |pose, seen| residual(&self.camera, pose, point, seen).is_some_and(|[x, y, _]| x.hypot(y) < 1.5 * self.params.threshold);
+            let Some((point, cosine)) = triangulate(rays).filter(|(_, cosine)| *cosine < NARROW) else {
+                continue;
+            };
+            let fits = |pose, seen| {
+                residual(&self.camera, pose, point, seen)
+                    .is_some_and(|[x, y, _]| x.hypot(y) < 1.5 * self.params.threshold)
+            };
             landmark.point = (cosine > 0.5 && fits(&one, first) && fits(&other, last)).then_some(point);
         }
     }
@@ -156,7 +164,8 @@ impl VisualOdometry {
             let Some(point) = landmark.point else { return true };
             landmark.seen().iter().all(|seen| {
                 let Some(frame) = window.iter().find(|frame| frame.key == seen.key) else { return true };
-                residual(camera, &frame.pose, point, seen).is_some_and(|parts| parts.iter().all(|part| part.abs() < limit))
+                residual(camera, &frame.pose, point, seen)
+                    .is_some_and(|parts| parts.iter().all(|part| part.abs() < limit))
             })
         });
     }

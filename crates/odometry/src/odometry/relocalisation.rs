@@ -16,7 +16,8 @@ impl VisualOdometry {
         self.archive.similar(&view, self.archive.records.len(), &mut candidates);
         let threshold = 2.0 * self.params.threshold;
         let (key, place) = candidates.into_iter().find_map(|key| {
-            let place = self.archive.recognise(&self.camera, &view, key, threshold, self.params.loop_inliers)?;
+            let place =
+                self.archive.recognise(&self.camera, &view, key, threshold, self.params.loop_inliers)?;
             Some((key, place))
         })?;
         let record = &self.archive.records[key];

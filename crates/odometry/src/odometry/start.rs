@@ -57,10 +57,15 @@ impl VisualOdometry {
         let Some(motion) = relative_pose(&pairs, threshold, least, &mut random, &mut agrees) else {
             return Ok(Tracking::Starting);
         };
-        let points: Vec<_> = pairs.iter().zip(&agrees).map(|(pair, agrees)| {
-            agrees.then(|| triangulate([(&Pose::IDENTITY, pair[0]), (&motion, pair[1])])).flatten()
-        }).collect();
-        let mut angles: Vec<f64> = points.iter().flatten().map(|(_, cosine)| cosine.clamp(-1.0, 1.0).acos()).collect();
+        let points: Vec<_> = pairs
+            .iter()
+            .zip(&agrees)
+            .map(|(pair, agrees)| {
+                agrees.then(|| triangulate([(&Pose::IDENTITY, pair[0]), (&motion, pair[1])])).flatten()
+            })
+            .collect();
+        let mut angles: Vec<f64> =
+            points.iter().flatten().map(|(_, cosine)| cosine.clamp(-1.0, 1.0).acos()).collect();
         let mut depths: Vec<f64> = points.iter().flatten().map(|(point, _)| point[2]).collect();
         angles.sort_by(f64::total_cmp);
         depths.sort_by(f64::total_cmp);
@@ -70,31 +75,46 @@ impl VisualOdometry {
         let scale = DEPTH / depths[depths.len() / 2];
         for ((at, found), agrees) in followed.iter().zip(&points).zip(&agrees) {
             let landmark = &mut self.landmarks[*at];
-            landmark.point = found.filter(|(_, cosine)| *cosine < super::key_frames::NARROW).map(|(point, _)| scaled(point, scale));
+            landmark.point = found
+                .filter(|(_, cosine)| *cosine < super::key_frames::NARROW)
+                .map(|(point, _)| scaled(point, scale));
             landmark.is_followed = *agrees;
         }
         self.pose = Pose { position: scaled(motion.position, scale), ..motion };
         self.motion = Pose::IDENTITY;
         self.state = State::Tracking;
         self.make_key_frame(frame, self.archive.records.len() - 1);
-        if let Some(height) = self.known_height()
-            && let Some(found) = height_above_ground(&self.camera, &self.pose, &self.landmarks, &mut self.heights)
-        {
-            self.rescale(height / found);
-        }
         let inliers = self.landmarks.iter().filter(|landmark| landmark.point.is_some()).count();
         Ok(Tracking::Tracked { pose: self.pose, inliers, is_key_frame: true, is_recovered: false })
     }
 
-    /// Returns the height of a single camera, if it is known.
-    pub(super) fn known_height(&self) -> Option<f64> {
-        (!self.observes_scale() && self.params.camera_height > 0.0).then_some(self.params.camera_height)
+    /// Corrects the scale of a single camera whose height is known, by what the ground in the newest key frame shows.
+    pub(super) fn correct_scale(&mut self) {
+        if self.observes_scale() || self.params.camera_height == 0.0 {
+            return;
+        }
+        let Some(found) = height_above_ground(&self.camera, &self.pose, &self.landmarks, &mut self.heights)
+        else {
+            return;
+        };
+        let ratio = self.params.camera_height / found;
+        if std::env::var("DBG").is_ok() { eprintln!("kf {} height {found:.3} n {} ratio {ratio:.3}", self.archive.records.len(), self.heights.len()); }
+        if self.scale_corrections == 0 {
+            self.rescale(ratio);
+        } else {
+            // Pitch and slopes disturb single heights: a mean of the first ones, later a slow one.
+            let share = (1.0 / (self.scale_corrections as f64 + 1.0)).max(0.04);
+            self.rescale(ratio.clamp(0.85, 1.18).powf(share));
+        }
+        self.scale_corrections += 1;
     }
 
     /// Scales the window about its oldest key frame.
-    pub(super) fn rescale(&mut self, factor: f64) {
+    fn rescale(&mut self, factor: f64) {
         let Some(centre) = self.window.first().map(|frame| frame.pose.position) else { return };
-        let scaled = |point: [f64; 3]| std::array::from_fn(|axis| centre[axis] + factor * (point[axis] - centre[axis]));
+        let scaled = |point: [f64; 3]| {
+            std::array::from_fn(|axis| centre[axis] + factor * (point[axis] - centre[axis]))
+        };
         for frame in &mut self.window {
             frame.pose.position = scaled(frame.pose.position);
         }

@@ -71,6 +71,8 @@ pub struct VisualOdometry {
     pub(super) corners: Vec<[f32; 2]>,
     pub(super) found: Vec<Option<Match>>,
     pub(super) heights: Vec<f64>,
+    /// Number of times that the height of a single camera corrected its scale.
+    pub(super) scale_corrections: usize,
     sights: Vec<Sight>,
     sight_of: Vec<usize>,
     resection: Resection,
@@ -140,6 +142,7 @@ impl VisualOdometry {
             corners: Vec::new(),
             found: Vec::new(),
             heights: Vec::new(),
+            scale_corrections: 0,
             sights: Vec::new(),
             sight_of: Vec::new(),
             resection: Resection::default(),
@@ -192,9 +195,9 @@ impl VisualOdometry {
     }
 
     /// Returns whether the scale of the trajectory is that of the world: for a stereo pair and depths, and for a single camera whose height
-    /// is given.
+    /// is given and that has seen the ground.
     pub fn is_metric(&self) -> bool {
-        self.observes_scale() || self.params.camera_height > 0.0
+        self.observes_scale() || self.scale_corrections > 0
     }
 
     /// Returns the number of key frames.
@@ -271,7 +274,8 @@ impl VisualOdometry {
         let guess = self.pose.then(&motion);
         let mut random = Random::from_key([self.frames as u64, of as u64]);
         let threshold = self.params.threshold;
-        let found = resect(&self.camera, &self.sights, Some(&guess), threshold, &mut random, &mut self.resection);
+        let found =
+            resect(&self.camera, &self.sights, Some(&guess), threshold, &mut random, &mut self.resection);
         let inliers = self.resection.inliers;
         if !found || inliers < least || inliers * 3 < of {
             return Err(LossReason::TooFewInliers { found: if found { inliers } else { 0 }, of });
@@ -291,14 +295,20 @@ impl VisualOdometry {
     pub(super) fn follow_landmarks(&mut self, motion: &Pose) {
         let (from, to, camera) = (&self.previous, &self.current, &self.camera);
         let next = self.pose.then(motion);
-        let turn = Pose { position: [0.0; 3], ..*motion };
+        let landmarks = &self.landmarks;
         let search = |landmark: &Landmark| {
             if !landmark.is_followed {
                 return None;
             }
             let in_camera = match landmark.point {
                 Some(point) => next.point_in_frame(point),
-                None => turn.point_in_frame(camera.ray(landmark.place.map(f64::from))),
+                None => {
+                    let [x, y, z] = camera.ray(landmark.place.map(f64::from));
+                    let depth = depth_nearby(landmarks, landmark.place, &self.pose).unwrap_or(f64::INFINITY);
+                    // Without a depth the ray is turned, as that of a point far away.
+                    let aside = motion.position.map(|part| part / depth);
+                    Pose { position: aside, ..*motion }.point_in_frame([x, y, z])
+                }
             };
             let guess = camera.project(in_camera).filter(|guess| camera.contains(*guess, 8.0))?;
             let found = follow(from, to, landmark.place, guess.map(|part| part as f32), 3)?;
@@ -307,7 +317,7 @@ impl VisualOdometry {
         self.found.clear();
         self.found.resize(self.landmarks.len(), None);
         let each = self.landmarks.len().div_ceil(self.params.threads).max(1);
-        let mut parts = self.found.chunks_mut(each).zip(self.landmarks.chunks(each));
+        let mut parts = self.found.chunks_mut(each).zip(landmarks.chunks(each));
         let work = |(found, landmarks): (&mut [Option<Match>], &[Landmark])| {
             found.iter_mut().zip(landmarks).for_each(|(found, landmark)| *found = search(landmark));
         };
@@ -350,4 +360,17 @@ impl VisualOdometry {
             || (inliers as f64) < FEW * self.landmarks_at_key as f64
             || self.frames_since_key >= MOST_FRAMES
     }
+}
+
+/// Returns the depth of the followed landmark nearest in the image, rows counting twice: the ground has one depth along a row.
+fn depth_nearby(landmarks: &[Landmark], [x, y]: [f32; 2], pose: &Pose) -> Option<f64> {
+    let mut best = (f32::INFINITY, None);
+    for landmark in landmarks.iter().filter(|landmark| landmark.is_followed) {
+        let (aside, below) = (landmark.place[0] - x, 2.0 * (landmark.place[1] - y));
+        let square = aside * aside + below * below;
+        if square < best.0 && landmark.point.is_some() {
+            best = (square, landmark.point);
+        }
+    }
+    best.1.map(|point| pose.point_in_frame(point)[2]).filter(|depth| *depth > 1e-3)
 }

@@ -57,7 +57,11 @@ pub const KITTI_LENGTHS: [f64; 8] = [100.0, 200.0, 300.0, 400.0, 500.0, 600.0, 7
 ///
 /// # Errors
 /// `InvalidInput` for different numbers of poses, none, or positions that determine no alignment.
-pub fn absolute_errors(truth: &Trajectory, estimate: &Trajectory, alignment: Alignment) -> Result<Statistics> {
+pub fn absolute_errors(
+    truth: &Trajectory,
+    estimate: &Trajectory,
+    alignment: Alignment,
+) -> Result<Statistics> {
     let aligned = aligned(truth, estimate, alignment)?;
     let pairs = truth.poses().iter().zip(aligned.poses());
     Statistics::of(pairs.map(|(a, b)| distance(a.pose.position, b.pose.position)).collect())
@@ -79,7 +83,9 @@ pub(crate) fn aligned(truth: &Trajectory, estimate: &Trajectory, alignment: Alig
     };
     let found = Similarity3::aligning(&positions(estimate), &positions(truth), with_scale);
     let found = found.ok_or_else(|| {
-        Error::invalid_input("the positions determine no alignment; give at least 3 poses that do not coincide")
+        Error::invalid_input(
+            "the positions determine no alignment; give at least 3 poses that do not coincide",
+        )
     })?;
     Ok(estimate.transformed(&found))
 }
@@ -144,7 +150,11 @@ pub fn kitti_drift(truth: &Trajectory, estimate: &Trajectory, lengths: &[f64]) -
         )));
     }
     let count = pieces as f64;
-    Ok(DriftErrors { translation: 100.0 * translation / count, rotation: (rotation / count).to_degrees(), pieces })
+    Ok(DriftErrors {
+        translation: 100.0 * translation / count,
+        rotation: (rotation / count).to_degrees(),
+        pieces,
+    })
 }
 
 fn motion_error(truth: &Trajectory, estimate: &Trajectory, from: usize, to: usize) -> Pose {
@@ -169,7 +179,9 @@ fn check(truth: &Trajectory, estimate: &Trajectory) -> Result<()> {
 impl Statistics {
     fn of(mut errors: Vec<f64>) -> Result<Self> {
         if errors.is_empty() {
-            return Err(Error::invalid_input("there are no pairs of poses to compare; give a longer trajectory"));
+            return Err(Error::invalid_input(
+                "there are no pairs of poses to compare; give a longer trajectory",
+            ));
         }
         errors.sort_by(f64::total_cmp);
         let count = errors.len() as f64;

@@ -22,12 +22,16 @@ impl Trajectory {
         let mut poses = Vec::new();
         for (line, number) in text.lines().zip(1..).filter(|(line, _)| !is_comment(line)) {
             let values = numbers::<12>(line, number)?;
-            let rows: [[f64; 4]; 3] = std::array::from_fn(|row| std::array::from_fn(|at| values[4 * row + at]));
+            let rows: [[f64; 4]; 3] =
+                std::array::from_fn(|row| std::array::from_fn(|at| values[4 * row + at]));
             let pose = Pose::from_rows(rows);
-            let differs = pose.rows().as_flattened().iter().zip(&values).any(|(own, read)| (own - read).abs() > 0.01);
+            let differs =
+                pose.rows().as_flattened().iter().zip(&values).any(|(own, read)| (own - read).abs() > 0.01);
             let is_unit = |row: [f64; 3]| (length(row) - 1.0).abs() < 0.01;
             if differs || !pose.rotation.into_iter().all(is_unit) {
-                return Err(Error::format(format!("line {number}: the first three columns are no rotation matrix")));
+                return Err(Error::format(format!(
+                    "line {number}: the first three columns are no rotation matrix"
+                )));
             }
             poses.push(Stamped { time: poses.len() as f64 / rate, pose });
         }

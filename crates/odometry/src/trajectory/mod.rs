@@ -2,10 +2,10 @@
 
 mod errors;
 mod kitti;
-mod trajectory_type;
-mod tum;
 #[cfg(test)]
 mod tests;
+mod trajectory_type;
+mod tum;
 
 pub use errors::{Alignment, RelativeErrors, Statistics, absolute_errors, kitti_drift, relative_errors};
 pub use errors::{DriftErrors, KITTI_LENGTHS};

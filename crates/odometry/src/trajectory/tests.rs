@@ -87,7 +87,12 @@ fn a_scale_error_of_one_percent_is_one_percent_of_drift() {
 #[test]
 fn poses_are_associated_by_time() {
     let own = way(20, 0.0);
-    let moved = own.poses().iter().skip(3).step_by(2).map(|stamped| Stamped { time: stamped.time + 0.004, ..*stamped });
+    let moved = own
+        .poses()
+        .iter()
+        .skip(3)
+        .step_by(2)
+        .map(|stamped| Stamped { time: stamped.time + 0.004, ..*stamped });
     let other = Trajectory::new(moved.collect()).unwrap();
     let (a, b) = own.associated(&other, 0.01).unwrap();
     assert_eq!((a.len(), b.len()), (other.len(), other.len()));

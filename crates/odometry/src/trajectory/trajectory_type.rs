@@ -25,8 +25,12 @@ impl Trajectory {
     /// # Errors
     /// `InvalidInput` when times do not increase, or a number is not finite.
     pub fn new(poses: Vec<Stamped>) -> Result<Self> {
-        if let Some(at) = poses.iter().position(|stamped| !stamped.time.is_finite() || !stamped.pose.is_finite()) {
-            return Err(Error::invalid_input(format!("pose {at} of the trajectory is not finite; leave it out")));
+        if let Some(at) =
+            poses.iter().position(|stamped| !stamped.time.is_finite() || !stamped.pose.is_finite())
+        {
+            return Err(Error::invalid_input(format!(
+                "pose {at} of the trajectory is not finite; leave it out"
+            )));
         }
         if let Some(at) = poses.windows(2).position(|pair| pair[1].time <= pair[0].time) {
             return Err(Error::invalid_input(format!(
@@ -70,7 +74,8 @@ impl Trajectory {
         for stamped in &self.poses {
             let after = rest.partition_point(|other| other.time < stamped.time);
             let aside = |at: &usize| (rest[*at].time - stamped.time).abs();
-            let near = [after.checked_sub(1), Some(after)].into_iter().flatten().filter(|at| *at < rest.len());
+            let near =
+                [after.checked_sub(1), Some(after)].into_iter().flatten().filter(|at| *at < rest.len());
             let nearest = near.min_by(|a, b| aside(a).total_cmp(&aside(b)));
             if let Some(at) = nearest.filter(|at| aside(at) <= tolerance) {
                 own.push(*stamped);

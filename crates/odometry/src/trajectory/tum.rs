@@ -19,10 +19,14 @@ impl Trajectory {
         for (line, number) in text.lines().zip(1..).filter(|(line, _)| !is_comment(line)) {
             let [time, x, y, z, quaternion @ ..] = numbers::<8>(line, number)?;
             if quaternion.iter().map(|part: &f64| part * part).sum::<f64>() < 1e-12 {
-                return Err(Error::format(format!("line {number}: the quaternion is zero; write qx qy qz qw of length 1")));
+                return Err(Error::format(format!(
+                    "line {number}: the quaternion is zero; write qx qy qz qw of length 1"
+                )));
             }
             if poses.last().is_some_and(|last| last.time >= time) {
-                return Err(Error::format(format!("line {number}: time {time} is not after the line before; sort the file by time")));
+                return Err(Error::format(format!(
+                    "line {number}: time {time} is not after the line before; sort the file by time"
+                )));
             }
             poses.push(Stamped { time, pose: Pose::from_quaternion([x, y, z], quaternion) });
         }

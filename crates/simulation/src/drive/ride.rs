@@ -1,5 +1,7 @@
 //! Motion of the camera along the road.
 
+use std::f32::consts::TAU;
+
 use opendr_engine::Random;
 
 use super::DriveOptions;
@@ -24,7 +26,7 @@ pub(super) type CameraPose = [[f64; 4]; 3];
 
 impl Ride {
     pub fn new(road: Road, options: &DriveOptions, random: &mut Random) -> Self {
-        let mut wave = |low, high| [random.uniform(low, high), random.uniform(0.0, 6.28)].map(f64::from);
+        let mut wave = |low, high| [random.uniform(low, high), random.uniform(0.0, TAU)].map(f64::from);
         let waves = [(); 3].map(|()| [wave(0.1, 0.4), wave(0.8, 1.6)]);
         let step = options.speed / options.rate;
         Self { road, step, height: options.camera_height, shake: options.shake, waves }

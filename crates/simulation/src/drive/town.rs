@@ -29,9 +29,8 @@ struct Block {
 
 impl Town {
     pub fn new(road: &Road, options: &DriveOptions, random: &mut Random) -> Result<Self> {
-        let mut town = Self::default();
-        town.lane =
-            (0..(road.length / 2.0) as usize + 30).map(|at| road.at(2.0 * at as f64).position).collect();
+        let lane = (0..(road.length / 2.0) as usize + 30).map(|at| road.at(2.0 * at as f64).position);
+        let mut town = Self { lane: lane.collect(), ..Self::default() };
         let mut finish = |kind, random: &mut Random| Finish {
             kind,
             colour: colour(random),
