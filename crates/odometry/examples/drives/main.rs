@@ -1,14 +1,15 @@
 //! Measures visual odometry on rendered drives: drift, errors before and after loop closure, speed and memory.
 //!
 //! `cargo run --release -p opendr-odometry --example drives -- [SEEDS [PICTURE]]` drives straight, through curves and around a block for each
-//! seed from 1 to SEEDS (2), with one camera, a stereo pair and a depth camera. PICTURE is the file of a map of the last loop (PNG or JPEG).
+//! seed of SEEDS (1,2), with one camera, a stereo pair and a depth camera. `mono+h` is a camera whose height is given, `mono-h` one that
+//! did not see the ground. PICTURE is the file of a map of the last loop (PNG or JPEG).
 
 mod picture;
 mod run;
 
 use std::path::PathBuf;
 
-use opendr_engine::Result;
+use opendr_engine::{Error, Result};
 use opendr_odometry::{CameraKind, KITTI_LENGTHS};
 use opendr_simulation::drive::{Course, Drive, DriveOptions};
 
@@ -20,10 +21,13 @@ const LENGTHS: [f64; 4] = [25.0, 50.0, KITTI_LENGTHS[0], KITTI_LENGTHS[1]];
 
 fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
-    let seeds: u64 = arguments.next().and_then(|text| text.parse().ok()).unwrap_or(2);
+    let seeds = arguments.next().unwrap_or_else(|| "1,2".to_owned());
     let picture = arguments.next().map(PathBuf::from);
     println!("course   seed camera way_m drift_% rot_deg/m  ATE_m  closed_m loops  lost  fps_1 fps_2 cpu_ms");
-    for seed in 1..=seeds {
+    for seed in seeds.split(',') {
+        let seed = seed
+            .parse()
+            .map_err(|_| Error::invalid_param(format!("{seed} is no seed; give numbers like 1,2")))?;
         for (name, course) in
             [("straight", Course::Straight), ("curves", Course::Curves), ("loop", Course::Loop)]
         {
@@ -36,13 +40,14 @@ fn main() -> Result<()> {
             }
         }
     }
-    println!("peak memory {} MB, with the renderer and twelve odometries", peak_memory());
+    println!("peak memory {} MB, with the renderer and eight odometries", peak_memory());
     Ok(())
 }
 
 fn print_row(course: &str, seed: u64, outcome: &Outcome) {
     let camera = match outcome.kind {
-        CameraKind::Mono if outcome.is_metric => "mono+h",
+        CameraKind::Mono if outcome.has_height && outcome.is_metric => "mono+h",
+        CameraKind::Mono if outcome.has_height => "mono-h",
         CameraKind::Mono => "mono",
         CameraKind::Stereo => "stereo",
         CameraKind::Depth => "depth",

@@ -13,6 +13,8 @@ use opendr_simulation::drive::{Drive, DriveFrame};
 pub struct Outcome {
     pub kind: CameraKind,
     /// Whether the height of a single camera was given.
+    pub has_height: bool,
+    /// Whether the scale is observed; the estimate is scaled to the truth otherwise.
     pub is_metric: bool,
     pub truth: Trajectory,
     /// Aligned with the truth, before and after loops were closed.
@@ -32,7 +34,7 @@ pub struct Outcome {
 struct Runner {
     odometry: VisualOdometry,
     kind: CameraKind,
-    is_metric: bool,
+    has_height: bool,
     seconds: f64,
     cpu: f64,
     lost: usize,
@@ -43,13 +45,13 @@ pub fn run(drive: &Drive, lengths: &[f64]) -> Result<Vec<Outcome>> {
     let cameras = [
         (CameraKind::Mono, false),
         (CameraKind::Mono, true),
-        (CameraKind::Stereo, true),
-        (CameraKind::Depth, true),
+        (CameraKind::Stereo, false),
+        (CameraKind::Depth, false),
     ];
     let mut runners = Vec::new();
-    for (kind, is_metric) in cameras {
+    for (kind, has_height) in cameras {
         for threads in [1, 2] {
-            runners.push(Runner::new(drive, kind, is_metric, threads)?);
+            runners.push(Runner::new(drive, kind, has_height, threads)?);
         }
     }
     let mut truth = Vec::new();
@@ -70,7 +72,7 @@ pub fn run(drive: &Drive, lengths: &[f64]) -> Result<Vec<Outcome>> {
 }
 
 impl Runner {
-    fn new(drive: &Drive, kind: CameraKind, is_metric: bool, threads: usize) -> Result<Self> {
+    fn new(drive: &Drive, kind: CameraKind, has_height: bool, threads: usize) -> Result<Self> {
         let (focal_length, principal_point) = drive.intrinsics();
         let options = drive.options();
         let camera = PinholeCamera {
@@ -79,11 +81,10 @@ impl Runner {
             principal_point,
             baseline: f64::from(options.baseline),
         };
-        let is_mono = kind == CameraKind::Mono;
-        let camera_height = if is_mono && is_metric { options.camera_height } else { 0.0 };
+        let camera_height = if has_height { options.camera_height } else { 0.0 };
         let params = OdometryParams { threads, camera_height, ..OdometryParams::default() };
         let odometry = VisualOdometry::new(camera, kind, params)?;
-        Ok(Self { odometry, kind, is_metric, seconds: 0.0, cpu: 0.0, lost: 0 })
+        Ok(Self { odometry, kind, has_height, seconds: 0.0, cpu: 0.0, lost: 0 })
     }
 
     fn track(&mut self, frame: &DriveFrame) -> Result<()> {
@@ -107,7 +108,8 @@ impl Runner {
         rates: [f64; 2],
         frames: f64,
     ) -> Result<Outcome> {
-        let alignment = if self.is_metric { Alignment::Rigid } else { Alignment::Scaled };
+        let is_metric = self.odometry.is_metric();
+        let alignment = if is_metric { Alignment::Rigid } else { Alignment::Scaled };
         let compare = |odometry: &VisualOdometry| -> Result<(Trajectory, Trajectory)> {
             let (truth, estimate) = truth.associated(&odometry.trajectory(), 1e-3)?;
             let aligned = estimate.aligned_with(&truth, alignment)?;
@@ -122,7 +124,8 @@ impl Runner {
         let errors = [error(&before)?, error(&after)?];
         Ok(Outcome {
             kind: self.kind,
-            is_metric: self.is_metric,
+            has_height: self.has_height,
+            is_metric,
             truth: associated,
             before,
             after,

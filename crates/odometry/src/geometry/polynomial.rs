@@ -23,8 +23,7 @@ pub(super) fn real_roots(coefficients: &[f64; 5], roots: &mut [f64; 4]) -> usize
         let mut next = [0.0; 4];
         let mut more = 0;
         let mut low = -bound;
-        for at in 0..=count {
-            let high = if at < count { found[at] } else { bound };
+        for high in found.into_iter().take(count).chain([bound]) {
             if let Some(root) = root_between(derived, low, high)
                 && more < 4
             {

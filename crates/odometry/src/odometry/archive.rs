@@ -20,6 +20,15 @@ pub(super) struct KeyRecord {
     pub points: Vec<[f32; 3]>,
 }
 
+impl KeyRecord {
+    /// Scales the points of its corners.
+    pub fn scale_points(&mut self, factor: f64) {
+        for point in &mut self.points {
+            *point = point.map(|part| (factor * f64::from(part)) as f32);
+        }
+    }
+}
+
 /// Described corners of an image.
 #[derive(Debug, Clone, Default)]
 pub(super) struct View {

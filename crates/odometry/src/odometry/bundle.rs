@@ -152,7 +152,7 @@ impl Bundle {
                     continue;
                 }
                 let begin = 6 * (frame - fixed);
-                for row in 0..6 {
+                for (row, crossed) in crossed[count].iter_mut().enumerate() {
                     let product = |other: &dyn Fn(usize) -> f64| -> f64 {
                         (0..3).map(|part| linear.weight * linear.by_pose[part][row] * other(part)).sum()
                     };
@@ -161,9 +161,7 @@ impl Bundle {
                         self.normal[(begin + row) * size + begin + column] +=
                             product(&|part| linear.by_pose[part][column]);
                     }
-                    for column in 0..3 {
-                        crossed[count][row][column] = product(&|part| linear.by_point[part][column]);
-                    }
+                    *crossed = std::array::from_fn(|column| product(&|part| linear.by_point[part][column]));
                 }
                 rows[count] = begin;
                 count += 1;
@@ -173,14 +171,13 @@ impl Bundle {
                 let times: [[f64; 3]; 6] = crossed[one].map(|row| {
                     std::array::from_fn(|column| (0..3).map(|part| row[part] * inverse[part][column]).sum())
                 });
-                for row in 0..6 {
-                    let eliminated: f64 = (0..3).map(|part| times[row][part] * own.right[part]).sum();
-                    self.right[rows[one] + row] -= eliminated;
-                    for other in 0..=one {
-                        for column in 0..6 {
-                            let product: f64 =
-                                (0..3).map(|part| times[row][part] * crossed[other][column][part]).sum();
-                            self.normal[(rows[one] + row) * size + rows[other] + column] -= product;
+                for (row, times) in times.iter().enumerate() {
+                    let at = rows[one] + row;
+                    self.right[at] -= (0..3).map(|part| times[part] * own.right[part]).sum::<f64>();
+                    for (begin, crossed) in rows.iter().zip(&crossed).take(one + 1) {
+                        for (column, crossed) in crossed.iter().enumerate() {
+                            let product: f64 = (0..3).map(|part| times[part] * crossed[part]).sum();
+                            self.normal[at * size + begin + column] -= product;
                         }
                     }
                 }

@@ -11,15 +11,15 @@ pub(super) fn height_above_ground(
     landmarks: &[Landmark],
     heights: &mut Vec<f64>,
 ) -> Option<f64> {
-    const LEAST: usize = 7;
+    const LEAST: usize = 6;
     const SPREAD: f64 = 0.05;
     heights.clear();
-    let low = camera.principal_point[1] + 0.12 * camera.size[1] as f64;
+    let low = camera.principal_point[1] + 0.08 * camera.size[1] as f64;
     for landmark in landmarks.iter().filter(|landmark| landmark.is_followed) {
         let Some(point) = landmark.point else { continue };
         let [x, y, z] = pose.point_in_frame(point);
         // Beside the road stand what may be mistaken for it.
-        if f64::from(landmark.place[1]) > low && y > 0.0 && x.abs() < 2.5 * y && z < 8.0 * y {
+        if f64::from(landmark.place[1]) > low && y > 0.0 && x.abs() < 3.0 * y && z < 11.0 * y {
             heights.push(y);
         }
     }

@@ -98,9 +98,8 @@ impl VisualOdometry {
             return;
         };
         let ratio = self.params.camera_height / found;
-        if std::env::var("DBG").is_ok() { eprintln!("kf {} height {found:.3} n {} ratio {ratio:.3}", self.archive.records.len(), self.heights.len()); }
         if self.scale_corrections == 0 {
-            self.rescale(ratio);
+            self.rescale_all(ratio);
         } else {
             // Pitch and slopes disturb single heights: a mean of the first ones, later a slow one.
             let share = (1.0 / (self.scale_corrections as f64 + 1.0)).max(0.04);
@@ -109,9 +108,38 @@ impl VisualOdometry {
         self.scale_corrections += 1;
     }
 
+    /// Scales all that was tracked about the world's origin.
+    fn rescale_all(&mut self, factor: f64) {
+        for record in &mut self.archive.records {
+            record.pose.pose.position = scaled(record.pose.pose.position, factor);
+            record
+                .motion
+                .iter_mut()
+                .for_each(|motion| motion.pose.position = scaled(motion.pose.position, factor));
+            record.scale_points(factor);
+        }
+        for edge in &mut self.loops {
+            edge.motion.pose.position = scaled(edge.motion.pose.position, factor);
+        }
+        for frame in &mut self.history {
+            frame.relative.position = scaled(frame.relative.position, factor);
+        }
+        self.scale_followed([0.0; 3], factor);
+    }
+
     /// Scales the window about its oldest key frame.
     fn rescale(&mut self, factor: f64) {
         let Some(centre) = self.window.first().map(|frame| frame.pose.position) else { return };
+        self.scale_followed(centre, factor);
+        for frame in &self.window {
+            let record = &mut self.archive.records[frame.key as usize];
+            record.pose.pose = frame.pose;
+            record.scale_points(factor);
+        }
+    }
+
+    /// Scales poses of the window and landmarks about a point.
+    fn scale_followed(&mut self, centre: [f64; 3], factor: f64) {
         let scaled = |point: [f64; 3]| {
             std::array::from_fn(|axis| centre[axis] + factor * (point[axis] - centre[axis]))
         };
@@ -123,12 +151,5 @@ impl VisualOdometry {
         }
         self.pose.position = scaled(self.pose.position);
         self.motion.position = self.motion.position.map(|part| factor * part);
-        for frame in &self.window {
-            let record = &mut self.archive.records[frame.key as usize];
-            record.pose.pose = frame.pose;
-            for point in &mut record.points {
-                *point = point.map(|part| (factor * f64::from(part)) as f32);
-            }
-        }
     }
 }

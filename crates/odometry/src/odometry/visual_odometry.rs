@@ -97,7 +97,7 @@ pub(super) enum State {
 pub(super) struct FrameRecord {
     time: f64,
     key: usize,
-    relative: Pose,
+    pub relative: Pose,
 }
 
 /// Mean difference of patches beyond which a corner was not found again, in grey levels.

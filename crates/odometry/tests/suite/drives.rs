@@ -28,8 +28,8 @@ fn of(frame: &DriveFrame, kind: CameraKind) -> CameraFrame<'_> {
 }
 
 fn truth(drive: &Drive) -> Trajectory {
-    let poses = (0..drive.frames())
-        .map(|at| Stamped { time: drive.time(at), pose: Pose::from_rows(drive.pose(at)) });
+    let poses =
+        (0..drive.frames()).map(|at| Stamped { time: drive.time(at), pose: Pose::from_rows(drive.pose(at)) });
     Trajectory::new(poses.collect()).unwrap()
 }
 
@@ -43,7 +43,8 @@ fn every_camera_drifts_by_less_than_two_percent() {
     let drive = Drive::new(&options(Course::Curves)).unwrap();
     let mut all = [CameraKind::Mono, CameraKind::Stereo, CameraKind::Depth]
         .map(|kind| (kind, odometry(&drive, kind, OdometryParams::default())));
-    let mut threaded = odometry(&drive, CameraKind::Stereo, OdometryParams { threads: 2, ..Default::default() });
+    let mut threaded =
+        odometry(&drive, CameraKind::Stereo, OdometryParams { threads: 2, ..Default::default() });
     for number in 0..drive.frames() {
         let frame = drive.render(number).unwrap();
         for (kind, odometry) in &mut all {
@@ -67,10 +68,11 @@ fn every_camera_drifts_by_less_than_two_percent() {
 
 #[test]
 fn closing_the_loop_halves_the_error() {
-    let options = DriveOptions { block: 45.0, speed: 8.0, ..options(Course::Loop) };
+    let options = DriveOptions { block: 55.0, speed: 8.0, ..options(Course::Loop) };
     let drive = Drive::new(&options).unwrap();
-    // A short loop drifts too little to measure: few corners and a small window.
-    let params = OdometryParams { max_corners: 60, window: 3, loop_gap: 15, ..OdometryParams::default() };
+    // A short loop drifts little: few corners and a small window.
+    let params =
+        OdometryParams { max_corners: 110, window: 3, loop_inliers: 15, ..OdometryParams::default() };
     let mut odometry = odometry(&drive, CameraKind::Stereo, params);
     for number in 0..drive.frames() {
         odometry.track(&of(&drive.render(number).unwrap(), CameraKind::Stereo)).unwrap();

@@ -23,7 +23,8 @@ fn a_frame_allocates_only_for_the_history_of_poses() {
     for number in 0..drive.frames() {
         let frame = drive.render(number).unwrap();
         let before = allocations_of_thread();
-        let outcome = odometry.track(&CameraFrame::Stereo { left: &frame.left, right: &frame.right }).unwrap();
+        let outcome =
+            odometry.track(&CameraFrame::Stereo { left: &frame.left, right: &frame.right }).unwrap();
         let Tracking::Tracked { is_key_frame, .. } = outcome else { panic!("{outcome:?}") };
         if number > 12 && !is_key_frame {
             counts.push(allocations_of_thread() - before);
