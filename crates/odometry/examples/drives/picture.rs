@@ -9,11 +9,14 @@ use opendr_vision::draw::{Canvas, Colour};
 use opendr_vision::save;
 
 const SIDE: usize = 720;
-const MARGIN: f32 = 30.0;
+const MARGIN: f32 = 90.0;
 /// Truth, before and after loops were closed: grey, orange and blue.
 const COLOURS: [Colour; 3] = [[150, 150, 150], [226, 124, 28], [30, 96, 200]];
 
-/// Draws trajectories from above, with squares of ten metres.
+/// Factor by which errors are enlarged.
+const ENLARGED: f64 = 20.0;
+
+/// Draws trajectories of the same poses from above, with squares of ten metres and errors enlarged.
 pub fn draw_map(trajectories: &[&Trajectory; 3], path: &Path) -> Result<()> {
     let mut image = Image::from_rgb8(vec![255; 3 * SIDE * SIDE], SIDE, SIDE)?;
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -36,11 +39,18 @@ pub fn draw_map(trajectories: &[&Trajectory; 3], path: &Path) -> Result<()> {
         canvas.line([ends[0], y], [ends[1], y], 1.0, [228, 228, 228], 1.0);
     }
     for ((trajectory, colour), thickness) in trajectories.iter().zip(COLOURS).zip([7.0, 2.5, 2.5]) {
-        for pair in trajectory.poses().windows(2) {
-            let [from, to] = [&pair[0], &pair[1]].map(|stamped| {
-                let [x, y, _] = stamped.pose.position;
+        let places: Vec<_> = trajectory
+            .poses()
+            .iter()
+            .zip(trajectories[0].poses())
+            .map(|(stamped, truth)| {
+                let [own, exact] = [stamped, truth].map(|stamped| stamped.pose.position);
+                let [x, y] = [0, 1].map(|axis| exact[axis] + ENLARGED * (own[axis] - exact[axis]));
                 place(x, y)
-            });
+            })
+            .collect();
+        for pair in places.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
             canvas.line(from, to, thickness, colour, 1.0);
         }
     }
