@@ -8,7 +8,7 @@ use crate::shell::{Result, command, step, target};
 pub const TEST_LEARNER: &str = "--features=opendr/test-learner";
 
 /// The examples that tests start.
-pub const EXAMPLES: [&str; 22] = [
+pub const EXAMPLES: [&str; 23] = [
     "bag_copy",
     "bag_dump",
     "coco_files",
@@ -31,6 +31,7 @@ pub const EXAMPLES: [&str; 22] = [
     "slow_node",
     "tfjs_to_onnx",
     "tflite_to_onnx",
+    "trajectory_errors",
 ];
 
 /// Returns the arguments of `cargo build` for the command, the C library, `examples/rust` and [`EXAMPLES`], with the test learner. Packages

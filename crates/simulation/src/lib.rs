@@ -34,6 +34,7 @@ mod registry;
 mod sine_cosine;
 
 pub mod classic_control;
+pub mod drive;
 pub mod kinematics;
 pub mod lidar;
 pub mod mobile_manipulation;
