@@ -5,6 +5,8 @@
 
 mod card;
 mod checks;
+mod deb;
+mod deny;
 mod function_docs;
 mod generate;
 mod imports;
@@ -14,6 +16,7 @@ mod junit;
 mod layers;
 mod learner_table;
 mod lexer;
+mod linked;
 mod models;
 mod opendr;
 mod pages;
@@ -22,9 +25,12 @@ mod passages;
 mod realtime;
 mod ros;
 mod rust_tests;
+mod sbom;
 mod shell;
 mod ship;
 mod site;
+mod source_date;
+mod spdx;
 mod speed;
 mod suite;
 mod surfaces;
@@ -70,6 +76,11 @@ usage: cargo xtask VERB
              train through Vulkan
   install-c PREFIX
              install the C library with its headers, pkg-config file and CMake package under PREFIX
+  deb        build Debian packages in the profile dist into target/deb, and check them with lintian
+  deb --binaries DIR
+             pack the built programs and libraries of a folder instead
+  sbom       write the bills of materials of the packages (CycloneDX) into target/sbom
+  deny       fail if a dependency has a licence, source or version that deny.toml does not allow, or a known vulnerability
 
 environment:
   OPENDR_TEST_DATA   folder with models/ and data/; without it, tests that need it are skipped";
@@ -94,6 +105,10 @@ fn main() -> ExitCode {
         ["realtime", "--write"] => realtime::run_and_write(),
         ["train", name] => train::run(name, false),
         ["train", name, "--gpu"] => train::run(name, true),
+        ["deb"] => deb::run(None),
+        ["deb", "--binaries", folder] => deb::run(Some(folder.as_ref())),
+        ["sbom"] => sbom::run(),
+        ["deny"] => deny::run(),
         ["install-c", prefix] => install_c::run(prefix.as_ref()),
         _ => {
             eprintln!("{USAGE}");
