@@ -1,5 +1,7 @@
 //! The date that packages state instead of the time of their build, so that the same sources give the same files.
 
+use std::time::{SystemTime, UNIX_EPOCH};
+
 use crate::shell::{Result, command, output};
 
 const DAYS: [&str; 7] = ["Thu", "Fri", "Sat", "Sun", "Mon", "Tue", "Wed"];
@@ -19,6 +21,14 @@ impl SourceDate {
         };
         let seconds = text.trim().parse();
         seconds.map(Self).map_err(|_| format!("SOURCE_DATE_EPOCH is {text:?}; set it to seconds since 1970"))
+    }
+
+    /// Returns the time of this machine.
+    pub fn now() -> Result<Self> {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH);
+        since
+            .map(|since| Self(since.as_secs()))
+            .map_err(|error| format!("the clock of this machine: {error}"))
     }
 
     /// Returns the seconds since 1970.

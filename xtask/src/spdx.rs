@@ -77,7 +77,11 @@ fn one(words: &mut Vec<&str>) -> Result<Expression> {
     match words.pop() {
         Some("(") => {
             let inner = any(words)?;
-            if words.pop() == Some(")") { Ok(inner) } else { Err("a closing parenthesis is missing".to_owned()) }
+            if words.pop() == Some(")") {
+                Ok(inner)
+            } else {
+                Err("a closing parenthesis is missing".to_owned())
+            }
         }
         Some(word @ ("AND" | "OR" | "WITH" | ")")) => Err(format!("unexpected {word:?}")),
         Some(licence) if words.last() == Some(&"WITH") => {

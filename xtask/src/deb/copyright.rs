@@ -119,14 +119,14 @@ fn holders(linked: &Linked) -> Vec<String> {
             let line = line.join(" ");
             let rest = line.strip_prefix("Copyright").or_else(|| line.strip_prefix("COPYRIGHT"));
             let is_holder = rest.is_some_and(|rest| {
-                let has_year =
-                    rest.as_bytes().windows(4).any(|four| four.iter().all(u8::is_ascii_digit));
+                let has_year = rest.as_bytes().windows(4).any(|four| four.iter().all(u8::is_ascii_digit));
                 (has_year || rest.contains("(c)") || rest.contains('©'))
                     && !["yyyy", "YEAR", "<year>"].iter().any(|placeholder| rest.contains(placeholder))
             });
             if let Some(rest) = rest.filter(|_| is_holder) {
                 let rest = rest.trim_start_matches([':', ' ']);
-                let rest = ["(c)", "(C)", "©"].iter().fold(rest, |rest, sign| rest.trim_start_matches(sign).trim());
+                let rest =
+                    ["(c)", "(C)", "©"].iter().fold(rest, |rest, sign| rest.trim_start_matches(sign).trim());
                 found.insert(rest.trim_end_matches(". All rights reserved.").to_owned());
             }
         }
@@ -152,7 +152,11 @@ fn licence_files(linked: &Linked) -> Vec<String> {
         path.is_file()
             && path.file_name().is_some_and(|name| is_licence(name.to_string_lossy().to_uppercase()))
     });
-    paths.iter().filter_map(|path| fs::read(path).ok()).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).collect()
+    paths
+        .iter()
+        .filter_map(|path| fs::read(path).ok())
+        .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+        .collect()
 }
 
 /// Returns the text of a licence as the lines of a field, from a file of one of the crates that have it.

@@ -13,11 +13,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::deny::allowed_licences;
+use crate::inputs;
 use crate::install_c::{self, Libraries};
 use crate::linked::{self, Build};
 use crate::shell::{Result, command, is_installed, output, root, step, target};
 use crate::source_date::SourceDate;
-use crate::inputs;
 use relations::Sources;
 use tree::{Common, Fields, Tree};
 
@@ -39,7 +39,8 @@ const TOOLKIT: &str = "OpenDR is a toolkit of perception and learning for robots
 
 /// Builds the packages into `target/deb` from a build in the profile `dist`, or from the programs in `binaries`, and checks them.
 pub fn run(binaries: Option<&Path>) -> Result<()> {
-    let missing: Vec<_> = TOOLS.iter().filter(|(tool, _)| !is_installed(tool)).map(|(_, package)| *package).collect();
+    let missing: Vec<_> =
+        TOOLS.iter().filter(|(tool, _)| !is_installed(tool)).map(|(_, package)| *package).collect();
     if !missing.is_empty() {
         return Err(format!("run \"apt-get install {}\" first", missing.join(" ")));
     }
@@ -62,7 +63,16 @@ pub fn run(binaries: Option<&Path>) -> Result<()> {
 /// Builds the command and the C library for users, and returns their folder.
 fn build() -> Result<PathBuf> {
     let mut cargo = command("cargo");
-    cargo.args(["build", "--locked", "--profile", "dist", "--package", "opendr-cli", "--package", "opendr-c"]);
+    cargo.args([
+        "build",
+        "--locked",
+        "--profile",
+        "dist",
+        "--package",
+        "opendr-cli",
+        "--package",
+        "opendr-c",
+    ]);
     step("command and C library", cargo.args(["--features", "opendr-cli/training"]))?;
     Ok(target().join("dist"))
 }
@@ -105,7 +115,10 @@ impl Packages {
     /// Puts the files into the packages.
     fn stage(&self, binaries: &Path) -> Result<()> {
         self.command.copy(&binaries.join("opendr"), "usr/bin/opendr")?;
-        strip(&self.command.path("usr/bin/opendr")?, &["--remove-section=.comment", "--remove-section=.note"])?;
+        strip(
+            &self.command.path("usr/bin/opendr")?,
+            &["--remove-section=.comment", "--remove-section=.note"],
+        )?;
         for (name, page) in manual::pages(&self.command.path("usr/bin/opendr")?, self.common.date)? {
             self.command.write_gzipped(&format!("usr/share/man/man1/{name}.1"), &page)?;
         }
@@ -163,7 +176,8 @@ impl Packages {
     fn build(&self) -> Result<Vec<PathBuf>> {
         let sources = Sources::new(self.folder.join("staged/sources"), &["opendr", "libopendr0"])?;
         let staged = self.folder.join("staged/libopendr0");
-        let library = staged.join(format!("usr/{}/libopendr.so.{}", self.libraries, env!("CARGO_PKG_VERSION")));
+        let library =
+            staged.join(format!("usr/{}/libopendr.so.{}", self.libraries, env!("CARGO_PKG_VERSION")));
         sources.write_symbols(&staged, "libopendr0", VERSION)?;
         let of_command = sources.needed(&self.command.path("usr/bin/opendr")?)?;
         let of_library = sources.needed(&library)?;
@@ -177,9 +191,16 @@ impl Packages {
                     architecture: &self.architecture,
                     multi_arch: None,
                     section: "science",
-                    relations: &[("Depends", of_command), ("Recommends", models()), ("Suggests", "ffmpeg, npm, python3-pip".into())],
+                    relations: &[
+                        ("Depends", of_command),
+                        ("Recommends", models()),
+                        ("Suggests", "ffmpeg, npm, python3-pip".into()),
+                    ],
                     synopsis: "perception and learning for robots (command)",
-                    description: &[TOOLKIT, "This package has the command opendr, which runs, trains, evaluates and tunes models, and serves them as ROS nodes."],
+                    description: &[
+                        TOOLKIT,
+                        "This package has the command opendr, which runs, trains, evaluates and tunes models, and serves them as ROS nodes.",
+                    ],
                 },
             )?,
             build(
@@ -191,7 +212,10 @@ impl Packages {
                     section: "libs",
                     relations: &[("Depends", of_library), ("Recommends", models())],
                     synopsis: "perception and learning for robots (C library)",
-                    description: &[TOOLKIT, "This package has the shared library with the interface for C and C++."],
+                    description: &[
+                        TOOLKIT,
+                        "This package has the shared library with the interface for C and C++.",
+                    ],
                 },
             )?,
             build(
@@ -203,7 +227,10 @@ impl Packages {
                     section: "libdevel",
                     relations: &[("Depends", format!("libopendr0 (= {VERSION})"))],
                     synopsis: "perception and learning for robots (development files)",
-                    description: &[TOOLKIT, "This package has the headers, the static library, the files for pkg-config and the package for CMake."],
+                    description: &[
+                        TOOLKIT,
+                        "This package has the headers, the static library, the files for pkg-config and the package for CMake.",
+                    ],
                 },
             )?,
             build(
@@ -215,7 +242,10 @@ impl Packages {
                     section: "science",
                     relations: &[("Enhances", "opendr, libopendr0".into())],
                     synopsis: "perception and learning for robots (trained models)",
-                    description: &[TOOLKIT, "This package has the models that OpenDR trained itself; the command and the library find them without network access."],
+                    description: &[
+                        TOOLKIT,
+                        "This package has the models that OpenDR trained itself; the command and the library find them without network access.",
+                    ],
                 },
             )?,
         ])
@@ -225,7 +255,11 @@ impl Packages {
 /// Returns `DEBFULLNAME <DEBEMAIL>`, by default the authors at the forge's address without replies.
 fn maintainer() -> String {
     let of = |name: &str, otherwise: &str| std::env::var(name).unwrap_or_else(|_| otherwise.to_owned());
-    format!("{} <{}>", of("DEBFULLNAME", "The OpenDR authors"), of("DEBEMAIL", "opendr-rs@users.noreply.github.com"))
+    format!(
+        "{} <{}>",
+        of("DEBFULLNAME", "The OpenDR authors"),
+        of("DEBEMAIL", "opendr-rs@users.noreply.github.com")
+    )
 }
 
 fn strip(program: &Path, options: &[&str]) -> Result<()> {

@@ -23,7 +23,9 @@ impl Sources {
         let mut shlibdeps = self.tool("dpkg-shlibdeps");
         let listed = output(shlibdeps.args(["--warnings=1", "-O", "-e"]).arg(program))?;
         let depends = listed.lines().find_map(|line| line.strip_prefix("shlibs:Depends="));
-        depends.map(str::to_owned).ok_or_else(|| format!("dpkg-shlibdeps: no dependencies of {}", program.display()))
+        depends
+            .map(str::to_owned)
+            .ok_or_else(|| format!("dpkg-shlibdeps: no dependencies of {}", program.display()))
     }
 
     /// Writes the control file `symbols` of a library: each symbol with the version that introduced it.

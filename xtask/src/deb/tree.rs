@@ -77,7 +77,8 @@ impl Tree {
     /// Copies a file.
     pub fn copy(&self, from: &Path, name: &str) -> Result<()> {
         let path = self.path(name)?;
-        fs::copy(from, &path).map_err(|error| format!("{} to {}: {error}", from.display(), path.display()))?;
+        fs::copy(from, &path)
+            .map_err(|error| format!("{} to {}: {error}", from.display(), path.display()))?;
         Ok(())
     }
 
