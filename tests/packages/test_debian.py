@@ -117,7 +117,7 @@ def system(packages, tmp_path_factory):
 def test_command_runs_in_a_new_system(system, packages):
     version = field(packages["opendr"], "Version").split("-")[0]
     assert output("chroot", system, "opendr", "--version") == f"opendr {version}\n"
-    assert "opendr" in output("chroot", system, "opendr", "models", "--offline")
+    assert "nanodet" in output("chroot", system, "env", "OPENDR_OFFLINE=1", "opendr", "models")
 
 
 def test_program_in_c_is_compiled_in_a_new_system(system):

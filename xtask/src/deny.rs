@@ -12,7 +12,14 @@ pub fn run() -> Result<()> {
     let cargo_deny = cargo_deny()?;
     step(
         "licences, sources and versions of the dependencies",
-        command(&cargo_deny).args(["--locked", "check", "--hide-inclusion-graph", "licenses", "sources", "bans"]),
+        command(&cargo_deny).args([
+            "--locked",
+            "check",
+            "--hide-inclusion-graph",
+            "licenses",
+            "sources",
+            "bans",
+        ]),
     )?;
     step("known vulnerabilities", command(&cargo_deny).args(["--locked", "check", "advisories"])).map_err(
         |error| {

@@ -1,5 +1,6 @@
 //! What a Debian package needs and provides: the shared libraries of its programs, the symbols of its library.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -34,8 +35,13 @@ impl Sources {
         let mut gensymbols = self.tool("dpkg-gensymbols");
         gensymbols.arg(format!("-p{package}")).arg(format!("-v{upstream}"));
         gensymbols.arg(format!("-P{}", tree.display()));
-        output(gensymbols.arg(format!("-O{}", tree.join("DEBIAN/symbols").display())))?;
-        Ok(())
+        let path = tree.join("DEBIAN/symbols");
+        output(gensymbols.arg(format!("-O{}", path.display())))?;
+        let failed = |error: std::io::Error| format!("{}: {error}", path.display());
+        let symbols = fs::read_to_string(&path).map_err(failed)?;
+        // Builders of other packages name the development package by it.
+        let symbols = symbols.replacen("#MINVER#\n", "#MINVER#\n* Build-Depends-Package: libopendr-dev\n", 1);
+        fs::write(&path, symbols).map_err(failed)
     }
 
     fn tool(&self, name: &str) -> Command {

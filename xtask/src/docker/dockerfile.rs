@@ -151,14 +151,22 @@ mod tests {
 
     #[test]
     fn continued_lines_are_one_instruction() {
-        let stages =
-            parse("# x\nFROM a:1 AS b\nRUN one \\\n    # comment\n    && two\nFROM c:1\nCOPY --from=b /x /y\n")
-                .unwrap();
+        let stages = parse(
+            "# x\nFROM a:1 AS b\nRUN one \\\n    # comment\n    && two\nFROM c:1\nCOPY --from=b /x /y\n",
+        )
+        .unwrap();
         assert_eq!(stages[0].steps[0], Step::Run("one && two".to_owned()));
         assert!(matches!(&stages[1].steps[0], Step::Copy { from: Some(from), .. } if from == "b"));
-        for wrong in
-            ["", "RUN x", "FROM", "FROM a b", "FROM a:1\nADD x y", "FROM a:1\nCOPY x", "FROM a:1\nCMD x", "FROM a:1\nCOPY --from=b x y"]
-        {
+        for wrong in [
+            "",
+            "RUN x",
+            "FROM",
+            "FROM a b",
+            "FROM a:1\nADD x y",
+            "FROM a:1\nCOPY x",
+            "FROM a:1\nCMD x",
+            "FROM a:1\nCOPY --from=b x y",
+        ] {
             assert!(parse(wrong).is_err(), "{wrong}");
         }
     }

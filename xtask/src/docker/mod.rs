@@ -115,11 +115,9 @@ impl System {
         }
         let words =
             |arguments: &[String]| container.program.iter().chain(arguments).cloned().collect::<Vec<_>>();
-        for arguments in [
-            container.arguments.clone(),
-            vec!["--version".to_owned()],
-            vec!["models".to_owned(), "--offline".to_owned()],
-        ] {
+        for arguments in
+            [container.arguments.clone(), vec!["--version".to_owned()], vec!["models".to_owned()]]
+        {
             let words = words(&arguments);
             let words: Vec<_> = words.iter().map(String::as_str).collect();
             step(&format!("container as {}", container.user), &mut self.chroot(&container, &words))?;
