@@ -8,11 +8,10 @@ use crate::source_date::SourceDate;
 
 const CURRENT: &str = env!("CARGO_PKG_VERSION");
 
-/// Files with the version, and the text around it. All occurrences are the version of the release.
-const PLACES: [(&str, &str, &str); 6] = [
-    ("Cargo.toml", "\nversion = \"", "\"\n"),
-    ("Cargo.toml", ", version = \"", "\""),
-    ("bindings/models/pyproject.toml", "\nversion = \"", "\"\n"),
+/// Files with the version, and the text around it.
+const PLACES: [(&str, &str, &str); 5] = [
+    ("Cargo.toml", "version = \"", "\""),
+    ("bindings/models/pyproject.toml", "version = \"", "\""),
     ("ros/opendr/package.xml", "<version>", "</version>"),
     ("ros/opendr_msgs/package.xml", "<version>", "</version>"),
     ("ros/opendr_ros1/package.xml", "<version>", "</version>"),
@@ -32,11 +31,10 @@ pub fn run(version: &str) -> Result<()> {
     let changelog = released(&inputs::text("CHANGELOG.md")?, version, &SourceDate::now()?.day())?;
     for (file, before, after) in PLACES {
         let (old, new) = (format!("{before}{CURRENT}{after}"), format!("{before}{version}{after}"));
-        let text = inputs::text(file)?;
-        if !text.contains(&old) {
-            return Err(format!("{file}: {:?} is missing", old.trim()));
-        }
-        write(file, &text.replace(&old, &new))?;
+        write(
+            file,
+            &replaced(&inputs::text(file)?, &old, &new).ok_or_else(|| format!("{file}: {old} is missing"))?,
+        )?;
     }
     write("CHANGELOG.md", &changelog)?;
     for manifest in ["Cargo.toml", "fuzz/Cargo.toml"] {
@@ -85,6 +83,16 @@ fn released(changelog: &str, version: &str, day: &str) -> Result<String> {
     Ok(format!("{before}## Unreleased\n\n## {version} - {day}\n{rest}"))
 }
 
+/// Returns a text with `new` instead of `old` in the lines of the version: its own, and those of the crates of the workspace, which have a
+/// path. `None` if there is none.
+fn replaced(text: &str, old: &str, new: &str) -> Option<String> {
+    let is_ours = |line: &str| line.trim_start().starts_with(old) || line.contains("path = ");
+    let lines = text.split_inclusive('\n');
+    let done: String =
+        lines.map(|line| if is_ours(line) { line.replace(old, new) } else { line.to_owned() }).collect();
+    (done != text || old == new).then_some(done)
+}
+
 fn write(file: &str, text: &str) -> Result<()> {
     fs::write(root().join(file), text).map_err(|error| format!("{file}: {error}"))
 }
@@ -97,10 +105,18 @@ mod tests {
     fn all_files_have_the_current_version() {
         for (file, before, after) in PLACES {
             let text = inputs::text(file).unwrap();
-            assert!(text.contains(&format!("{before}{CURRENT}{after}")), "{file}: {before}");
+            let old = format!("{before}{CURRENT}{after}");
+            assert!(replaced(&text, &old, "").is_some(), "{file}: {old}");
         }
         let python = inputs::text("bindings/python/pyproject.toml").unwrap();
         assert!(python.contains("dynamic = [\"version\"]"), "the wheel has the version of Cargo.toml");
+    }
+
+    #[test]
+    fn versions_of_others_stay() {
+        let text = "version = \"0.1.0\"\nours = { path = \"x\", version = \"0.1.0\" }\nother = { version = \"0.1.0\" }\n";
+        let new = text.replacen("0.1.0", "0.2.0", 2);
+        assert_eq!(replaced(text, "version = \"0.1.0\"", "version = \"0.2.0\"").unwrap(), new);
     }
 
     #[test]
