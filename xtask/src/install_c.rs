@@ -13,43 +13,55 @@ const SYSTEM_LIBRARIES: [&str; 7] = ["gcc_s", "util", "rt", "pthread", "m", "dl"
 /// Builds the library for users and installs it under `prefix`.
 pub fn run(prefix: &Path) -> Result<()> {
     step("C library", command("cargo").args(["build", "--profile", "dist", "--package", "opendr-c"]))?;
-    install(prefix, &target().join("dist"))
+    install(prefix, &target().join("dist"), &Libraries("lib"))
 }
 
 /// Installs the library of [`surfaces::build`](crate::surfaces::build), which has the test learner.
 pub fn install_for_tests(prefix: &Path) -> Result<()> {
-    install(prefix, &target().join("debug"))
+    install(prefix, &target().join("debug"), &Libraries("lib"))
 }
 
-fn install(prefix: &Path, built: &Path) -> Result<()> {
+/// Folder of the libraries relative to the prefix: `lib`, or `lib/x86_64-linux-gnu` as Debian has it.
+pub struct Libraries<'a>(pub &'a str);
+
+impl Libraries<'_> {
+    /// Returns the path from a folder `depth` levels below that of the libraries up to the prefix.
+    fn prefix_from(&self, depth: usize) -> String {
+        vec![".."; self.0.split('/').count() + depth].join("/")
+    }
+}
+
+/// Installs the library that was built in the folder `built`.
+pub fn install(prefix: &Path, built: &Path, libraries: &Libraries) -> Result<()> {
+    let lib = libraries.0;
     let prefix = std::path::absolute(prefix).map_err(|error| format!("{}: {error}", prefix.display()))?;
     let place = Place(prefix.clone());
     for (file, name) in files_below(&root().join("bindings/c/include"))? {
         place.copy(&file, &format!("include/{name}"))?;
     }
-    place.copy(&built.join("libopendr_c.a"), "lib/libopendr.a")?;
+    place.copy(&built.join("libopendr_c.a"), &format!("{lib}/libopendr.a"))?;
     if cfg!(target_os = "macos") {
-        place.copy(&built.join("libopendr_c.dylib"), "lib/libopendr.0.dylib")?;
-        place.link("libopendr.0.dylib", "lib/libopendr.dylib")?;
+        place.copy(&built.join("libopendr_c.dylib"), &format!("{lib}/libopendr.0.dylib"))?;
+        place.link("libopendr.0.dylib", &format!("{lib}/libopendr.dylib"))?;
     } else {
         let file = format!("libopendr.so.{VERSION}");
-        place.copy(&built.join("libopendr_c.so"), &format!("lib/{file}"))?;
-        place.link(&file, "lib/libopendr.so.0")?;
-        place.link("libopendr.so.0", "lib/libopendr.so")?;
+        place.copy(&built.join("libopendr_c.so"), &format!("{lib}/{file}"))?;
+        place.link(&file, &format!("{lib}/libopendr.so.0"))?;
+        place.link("libopendr.so.0", &format!("{lib}/libopendr.so"))?;
     }
     for (file, name) in files_below(&root().join("models/weights"))? {
         place.copy(&file, &format!("share/opendr/models/{name}"))?;
     }
-    place.write("lib/pkgconfig/opendr.pc", &pkg_config())?;
-    place.write("lib/pkgconfig/opendr-compat.pc", &compat_pkg_config())?;
-    place.write("lib/cmake/OpenDR/OpenDRConfig.cmake", &cmake_config())?;
-    place.write("lib/cmake/OpenDR/OpenDRConfigVersion.cmake", &cmake_version())?;
+    place.write(&format!("{lib}/pkgconfig/opendr.pc"), &pkg_config(libraries))?;
+    place.write(&format!("{lib}/pkgconfig/opendr-compat.pc"), &compat_pkg_config(libraries))?;
+    place.write(&format!("{lib}/cmake/OpenDR/OpenDRConfig.cmake"), &cmake_config(libraries))?;
+    place.write(&format!("{lib}/cmake/OpenDR/OpenDRConfigVersion.cmake"), &cmake_version())?;
     println!("installed OpenDR {VERSION} under {}", prefix.display());
     Ok(())
 }
 
 /// Returns the files below a folder, each with its relative path.
-fn files_below(folder: &Path) -> Result<Vec<(PathBuf, String)>> {
+pub fn files_below(folder: &Path) -> Result<Vec<(PathBuf, String)>> {
     let failed = |error: std::io::Error| format!("{}: {error}", folder.display());
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
@@ -65,11 +77,12 @@ fn files_below(folder: &Path) -> Result<Vec<(PathBuf, String)>> {
     Ok(found)
 }
 
-fn pkg_config() -> String {
+fn pkg_config(libraries: &Libraries) -> String {
     let private: Vec<_> = SYSTEM_LIBRARIES.iter().map(|library| format!("-l{library}")).collect();
+    let (lib, up) = (libraries.0, libraries.prefix_from(1));
     format!(
-        "prefix=${{pcfiledir}}/../..\n\
-         libdir=${{prefix}}/lib\n\
+        "prefix=${{pcfiledir}}/{up}\n\
+         libdir=${{prefix}}/{lib}\n\
          includedir=${{prefix}}/include\n\n\
          Name: OpenDR\n\
          Description: Open deep-learning toolkit for robotics\n\
@@ -82,9 +95,10 @@ fn pkg_config() -> String {
 }
 
 /// Returns the pkg-config file that adds the folder of the headers with OpenDR's names.
-fn compat_pkg_config() -> String {
+fn compat_pkg_config(libraries: &Libraries) -> String {
+    let up = libraries.prefix_from(1);
     format!(
-        "prefix=${{pcfiledir}}/../..\n\
+        "prefix=${{pcfiledir}}/{up}\n\
          includedir=${{prefix}}/include\n\n\
          Name: OpenDR, by the names of OpenDR 3.0\n\
          Description: The headers of OpenDR 3.0's C API over opendr.h\n\
@@ -94,18 +108,19 @@ fn compat_pkg_config() -> String {
     )
 }
 
-fn cmake_config() -> String {
+fn cmake_config(libraries: &Libraries) -> String {
+    let (lib, up) = (libraries.0, libraries.prefix_from(2));
     format!(
         "# The targets OpenDR::opendr (shared) and OpenDR::opendr_static, and OpenDR::opendr_compat with the headers of OpenDR 3.0.\n\
-         get_filename_component(_opendr_prefix \"${{CMAKE_CURRENT_LIST_DIR}}/../../..\" ABSOLUTE)\n\
+         get_filename_component(_opendr_prefix \"${{CMAKE_CURRENT_LIST_DIR}}/{up}\" ABSOLUTE)\n\
          if(NOT TARGET OpenDR::opendr)\n\
          \x20 add_library(OpenDR::opendr SHARED IMPORTED)\n\
          \x20 set_target_properties(OpenDR::opendr PROPERTIES\n\
-         \x20   IMPORTED_LOCATION \"${{_opendr_prefix}}/lib/libopendr${{CMAKE_SHARED_LIBRARY_SUFFIX}}\"\n\
+         \x20   IMPORTED_LOCATION \"${{_opendr_prefix}}/{lib}/libopendr${{CMAKE_SHARED_LIBRARY_SUFFIX}}\"\n\
          \x20   INTERFACE_INCLUDE_DIRECTORIES \"${{_opendr_prefix}}/include\")\n\
          \x20 add_library(OpenDR::opendr_static STATIC IMPORTED)\n\
          \x20 set_target_properties(OpenDR::opendr_static PROPERTIES\n\
-         \x20   IMPORTED_LOCATION \"${{_opendr_prefix}}/lib/libopendr.a\"\n\
+         \x20   IMPORTED_LOCATION \"${{_opendr_prefix}}/{lib}/libopendr.a\"\n\
          \x20   INTERFACE_INCLUDE_DIRECTORIES \"${{_opendr_prefix}}/include\"\n\
          \x20   INTERFACE_LINK_LIBRARIES \"{}\")\n\
          \x20 add_library(OpenDR::opendr_compat INTERFACE IMPORTED)\n\

@@ -5,6 +5,11 @@
 
 mod card;
 mod checks;
+#[cfg(unix)]
+mod deb;
+mod deny;
+#[cfg(unix)]
+mod docker;
 mod function_docs;
 mod generate;
 mod imports;
@@ -14,17 +19,24 @@ mod junit;
 mod layers;
 mod learner_table;
 mod lexer;
+mod linked;
 mod models;
 mod opendr;
 mod pages;
 mod parity;
 mod passages;
+mod publish;
 mod realtime;
+mod release;
+mod reproducible;
 mod ros;
 mod rust_tests;
+mod sbom;
 mod shell;
 mod ship;
 mod site;
+mod source_date;
+mod spdx;
 mod speed;
 mod suite;
 mod surfaces;
@@ -76,6 +88,20 @@ usage: cargo xtask VERB
              run goes on where it ended
   install-c PREFIX
              install the C library with its headers, pkg-config file and CMake package under PREFIX
+  deb        build Debian packages in the profile dist into target/deb, and check them with lintian
+  deb --binaries DIR
+             pack the built programs and libraries of a folder instead
+  docker --binaries DIR
+             parse the Dockerfiles and run the steps of the image for processors in a folder, with the built programs of DIR; needs root
+  publish --dry-run
+             check and pack the crates that users depend on, and list them in the order of their publication
+  publish    also publish those that the registry does not have
+  release VERSION
+             write the version into all files, commit and tag it; pushes nothing
+  reproducible PACKAGE [PROFILE]
+             build a package in two folders, in the profile dist or another, and fail if the files differ
+  sbom       write the bills of materials of the packages (CycloneDX) into target/sbom
+  deny       fail if a dependency has a licence, source or version that deny.toml does not allow, or a known vulnerability
 
 environment:
   OPENDR_TEST_DATA   folder with models/ and data/; without it, tests that need it are skipped";
@@ -100,6 +126,19 @@ fn main() -> ExitCode {
         ["realtime", "--write"] => realtime::run_and_write(),
         ["train", name] => train::run(name, false),
         ["train", name, "--gpu"] => train::run(name, true),
+        #[cfg(unix)]
+        ["deb"] => deb::run(None),
+        #[cfg(unix)]
+        ["deb", "--binaries", folder] => deb::run(Some(folder.as_ref())),
+        #[cfg(unix)]
+        ["docker", "--binaries", folder] => docker::run(folder.as_ref()),
+        ["publish", "--dry-run"] => publish::run(true),
+        ["publish"] => publish::run(false),
+        ["release", version] => release::run(version),
+        ["reproducible", package] => reproducible::run(package, "dist"),
+        ["reproducible", package, profile] => reproducible::run(package, profile),
+        ["sbom"] => sbom::run(),
+        ["deny"] => deny::run(),
         ["install-c", prefix] => install_c::run(prefix.as_ref()),
         ["zoo", "key", file] => zoo::key(file.as_ref()),
         ["zoo", "publish", target, "--key", key, ref sources @ ..] => {

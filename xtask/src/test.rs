@@ -174,7 +174,12 @@ fn suites(
     let suites = vec![
         of_package,
         of_c,
-        suite("tests of the command", &environments.outside, &["tests/python"], &[programs]),
+        suite(
+            "tests of the command",
+            &environments.outside,
+            &["tests/python", "tests/packages"],
+            &[programs],
+        ),
         parity,
         suite(
             "tests against reference tools",
