@@ -10,7 +10,8 @@ fn main() -> io::Result<()> {
     // Read at run time, since a build folder shared by several checkouts keeps this program.
     let here = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
     // A published crate has the cards in it. In a checkout that is a link, which some systems write as a file.
-    let models = Some(here.join("models")).filter(|folder| folder.is_dir()).unwrap_or(here.join("../../models"));
+    let models =
+        Some(here.join("models")).filter(|folder| folder.is_dir()).unwrap_or(here.join("../../models"));
     let mut code = String::new();
     for (constant, folder, ending) in
         [("CARDS", models.clone(), "toml"), ("CLASS_LISTS", models.join("classes"), "txt")]

@@ -52,7 +52,7 @@ impl Places {
             if list.is_empty() {
                 continue;
             }
-            // A word that is everywhere says nothing.
+            // A word that is in all places distinguishes none.
             let weight = (1.0 + places / list.len() as f32).ln();
             for place in list {
                 match self.votes.get_mut(*place as usize) {

@@ -6,7 +6,7 @@ use super::visual_odometry::{State, VisualOdometry};
 use crate::geometry::Pose;
 
 impl VisualOdometry {
-    /// Recognises the place of the current frame among all key frames and goes on from there. Returns the number of landmarks that agree.
+    /// Recognises the place of the current frame among all key frames and continues in it. Returns the number of landmarks that agree.
     pub(super) fn relocalise(&mut self, frame: &CameraFrame<'_>) -> Option<usize> {
         self.corners.clear();
         let (cell, most) = (self.params.cell, self.params.max_corners);

@@ -37,7 +37,7 @@ impl VisualOdometry {
         self.follow_landmarks(&Pose::IDENTITY);
         let found = self.found.iter().flatten().count();
         if found < 2 * self.params.min_inliers {
-            // Begins anew from this frame.
+            // A new start, from this frame.
             self.archive.clear();
             self.history.pop();
             return self.begin(frame);

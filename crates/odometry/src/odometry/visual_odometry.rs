@@ -291,7 +291,7 @@ impl VisualOdometry {
         Ok(inliers)
     }
 
-    /// Searches followed landmarks in the current image, where `motion` leads them, and writes what was found.
+    /// Searches followed landmarks in the current image, where `motion` leads them, and writes the found ones.
     pub(super) fn follow_landmarks(&mut self, motion: &Pose) {
         let (from, to, camera) = (&self.previous, &self.current, &self.camera);
         let next = self.pose.then(motion);
