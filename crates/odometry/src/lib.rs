@@ -1,4 +1,4 @@
-//! Visual odometry of one camera, a stereo pair or a depth camera, loop closure by a pose graph, and errors of trajectories.
+//! Visual odometry, loop closure by a pose graph, and errors of trajectories.
 //!
 //! - [`VisualOdometry`] follows corners by optical flow, finds the camera's pose by PnP in RANSAC, refines key frames in a sliding window,
 //!   recognises places and closes loops.
