@@ -20,6 +20,9 @@ const SOURCES: &str = "/usr/src/opendr";
 /// Builds the last commit twice, in the profile `profile`. Fails if a file of the package differs.
 pub fn run(package: &str, profile: &str) -> Result<()> {
     let date = SourceDate::get()?;
+    // A commit made between the builds is in neither.
+    let commit = output(command("git").args(["rev-parse", "HEAD"]))?;
+    let commit = commit.trim();
     let builds = FOLDERS
         .iter()
         .map(|folder| {
@@ -29,6 +32,7 @@ pub fn run(package: &str, profile: &str) -> Result<()> {
                 package,
                 profile,
                 date,
+                commit,
             )
         })
         .collect::<Result<Vec<_>>>()?;
@@ -52,18 +56,25 @@ pub fn run(package: &str, profile: &str) -> Result<()> {
 }
 
 /// Builds the sources of the last commit in a folder and returns the hashes of the files by their names.
-fn build(folder: &Path, package: &str, profile: &str, date: SourceDate) -> Result<BTreeMap<String, String>> {
+fn build(
+    folder: &Path,
+    package: &str,
+    profile: &str,
+    date: SourceDate,
+    commit: &str,
+) -> Result<BTreeMap<String, String>> {
     // A missing folder is no error.
     fs::remove_dir_all(folder).ok();
     let sources = folder.join("sources");
     fs::create_dir_all(&sources).map_err(|error| format!("{}: {error}", sources.display()))?;
     let archive = folder.join("sources.tar");
-    output(command("git").args(["archive", "--format=tar", "HEAD", "-o"]).arg(&archive))?;
+    output(command("git").args(["archive", "--format=tar", commit, "-o"]).arg(&archive))?;
     output(command("tar").arg("-xf").arg(&archive).arg("-C").arg(&sources))?;
     let registry = std::env::var_os("CARGO_HOME")
         .map(PathBuf::from)
         .or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
-    let mut flags = vec![format!("--remap-path-prefix={}={SOURCES}", sources.display())];
+    // The folder of the build is below it: build scripts write sources there, whose paths are kept too.
+    let mut flags = vec![format!("--remap-path-prefix={}={SOURCES}", folder.display())];
     flags.extend(
         registry.map(|registry| format!("--remap-path-prefix={}=/usr/src/cargo", registry.display())),
     );

@@ -135,6 +135,8 @@ impl Packages {
         strip(&library, &["--strip-unneeded", "--remove-section=.comment", "--remove-section=.note"])?;
         let archive = self.development.path(&file("libopendr.a"))?;
         strip(&archive, &["--strip-debug", "--enable-deterministic-archives", "--remove-section=.comment"])?;
+        let shlibs = format!("libopendr 0 libopendr0 (>= {})\n", env!("CARGO_PKG_VERSION"));
+        self.library.write("DEBIAN/shlibs", &shlibs)?;
         self.library.write("DEBIAN/triggers", "activate-noawait ldconfig\n")?;
         self.document()
     }
@@ -157,18 +159,14 @@ impl Packages {
             (&self.library, "libopendr0", licences),
             (&self.models, "opendr-models", copyright::own_file(homepage)?),
         ] {
+            let overrides = root().join("packaging/debian/lintian-overrides");
+            tree.copy(&overrides, &format!("usr/share/lintian/overrides/{name}"))?;
             tree.write(&format!("usr/share/doc/{name}/copyright"), &licences)?;
             tree.write_gzipped(&format!("usr/share/doc/{name}/changelog.Debian"), &changelog)?;
             tree.write_gzipped(&format!("usr/share/doc/{name}/changelog"), &upstream)?;
         }
         // The package depends on that of the library in the same version.
         self.development.link("libopendr0", "usr/share/doc/libopendr-dev")?;
-        for (tree, name) in [(&self.command, "opendr"), (&self.library, "libopendr0")] {
-            let overrides = root().join(format!("packaging/debian/{name}.lintian-overrides"));
-            if overrides.is_file() {
-                tree.copy(&overrides, &format!("usr/share/lintian/overrides/{name}"))?;
-            }
-        }
         Ok(())
     }
 
