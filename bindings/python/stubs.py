@@ -95,7 +95,12 @@ TYPES = {"float": "float", "int": "int", "bool": "bool", "text": "str", "list": 
 #: Further types that `infer` accepts for a datum.
 ALSO = {"Audio": ["Timeseries"], "Image": ["NDArray[Any]", "str", "os.PathLike[str]"]}
 #: Modules of the types in signatures.
-HOMES = {"Dataset": "opendr.engine.datasets", "Learner": "opendr.engine.learners", "PathLike": "opendr._input_value"}
+HOMES = {
+    "Dataset": "opendr.engine.datasets",
+    "DatasetLike": "opendr._input_value",
+    "Learner": "opendr.engine.learners",
+    "PathLike": "opendr._input_value",
+}
 #: Learners whose base class annotates `infer` itself.
 OWN_INFER = {
     "FallDetectorLearner",
@@ -156,8 +161,7 @@ def arguments(entry):
 
 def learner_class(entry):
     """Returns the class of a learner."""
-    found = opendr.learners()[entry["name"]]
-    return getattr(sys.modules[found.__module__], entry["class_name"])
+    return getattr(importlib.import_module(f"opendr.{entry['package']}.{entry['task']}"), entry["class_name"])
 
 
 def keywords(fields, without=()):

@@ -11,10 +11,9 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 from numpy.typing import ArrayLike, NDArray
 from opendr._upstream.drawing import visualize as visualize
 from opendr._upstream.segmentation_datasets import HighResolutionDataset as HighResolutionDataset
-from opendr._input_value import PathLike
+from opendr._input_value import DatasetLike, PathLike
 from opendr._upstream.learners.scenes import HighResolution
 from opendr.engine.data import Image
-from opendr.engine.datasets import Dataset
 from opendr.engine.target import Category, Heatmap
 
 class BinaryHighResolutionLearnerOutputs(NamedTuple):
@@ -85,4 +84,4 @@ class BinaryHighResolutionLearner(HighResolution):
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ...) -> Iterator[BinaryHighResolutionLearnerOutputs]: ...
     def fit(self, dataset: Any, silent: bool = ..., verbose: bool = ..., *, val_dataset: Any = ..., logging_path: PathLike = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., patches: int = ...) -> dict[str, Any]: ...
     def eval(self, dataset: Any, silent: Any = ..., verbose: Any = ..., **options: Any) -> dict[str, Any]: ...
-    def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
+    def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Optional[DatasetLike] = ..., validation: Optional[DatasetLike] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...

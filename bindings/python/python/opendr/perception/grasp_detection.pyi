@@ -13,9 +13,8 @@ from opendr._drawing import draw as draw
 from opendr._drawing import get_bbox as get_bbox
 from opendr._input_value import PathLike
 from opendr._native_learner import NativeLearner
+from opendr._upstream.learners.grasping import SingleDemo
 from opendr.engine.data import Image
-from opendr.engine.datasets import Dataset
-from opendr.engine.learners import Learner
 from opendr.engine.target import PoseList
 
 class GrConvNetLearner(NativeLearner):
@@ -44,7 +43,7 @@ class GrConvNetLearner(NativeLearner):
     def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, max_grasps: int = ..., distance: int = ...) -> None: ...
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], depth: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., max_grasps: int = ..., distance: int = ...) -> PoseList: ...
 
-class SingleDemoGraspLearner(NativeLearner):
+class SingleDemoGraspLearner(SingleDemo):
     """Learns to grasp an object from one image with the places of the jaws, and predicts them in other images.
 
     Task: grasp_detection. ``infer`` takes:
@@ -61,16 +60,16 @@ class SingleDemoGraspLearner(NativeLearner):
     Parameters of ``fit``, for one call or, given here, for all of them:
         lr: Learning rate of Adam at the start; it falls to 0. (default 0.001; 1e-06 to 0.1)
         iters: Number of steps. (default 2000; 1 to 1e+06)
-        batch_size: Augmented images of a step. (default 16; 1 to 1024)
+        img_per_step: Augmented images of a step. (default 16; 1 to 1024)
         num_workers: Number of threads. (default 2; 1 to 256)
         seed: Seed of initialisation and augmentations. (default 0)
     """
 
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, num_workers: int = ..., seed: int = ...) -> None: ...
+    def __init__(self, object_name: Any = ..., data_directory: Any = ..., lr: float = ..., batch_size: int = ..., img_per_step: int = ..., num_workers: int = ..., num_classes: Any = ..., iters: int = ..., threshold: float = ..., device: str = ..., *, optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., scale: float = ..., seed: int = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ...) -> PoseList: ...  # type: ignore[overload-overlap]
     @overload
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., threshold: float = ...) -> list[PoseList]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., threshold: float = ...) -> Iterator[PoseList]: ...
-    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., lr: float = ..., iters: int = ..., batch_size: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...
+    def fit(self, dataset: Any = ..., *, given: Any = ..., lr: float = ..., iters: int = ..., img_per_step: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...

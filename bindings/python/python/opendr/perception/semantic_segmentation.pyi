@@ -10,10 +10,10 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 from opendr._upstream.segmentation_datasets import CamVidDataset as CamVidDataset
-from opendr._input_value import PathLike
+from opendr._input_value import DatasetLike, PathLike
 from opendr._native_learner import NativeLearner
+from opendr._upstream.learners.own_networks import SegmentedObjects
 from opendr.engine.data import Image
-from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
 from opendr.engine.target import Heatmap
 
@@ -164,8 +164,8 @@ class BisenetLearner(NativeLearner):
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., full_size: bool = ..., context_path: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> list[Heatmap]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., full_size: bool = ..., context_path: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Iterator[Heatmap]: ...
-    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., silent: bool = ..., verbose: bool = ..., *, logging_path: PathLike = ..., out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., crop_height: int = ..., crop_width: int = ..., width: int = ..., fine: bool = ..., crop: float = ..., flip: float = ..., colour: float = ..., balance: float = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...
-    def eval(self, dataset: Dataset, silent: Any = ..., verbose: bool = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., **metric_params: Any) -> dict[str, Any]: ...
+    def fit(self, dataset: DatasetLike, val_dataset: Optional[DatasetLike] = ..., silent: bool = ..., verbose: bool = ..., *, logging_path: PathLike = ..., out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., crop_height: int = ..., crop_width: int = ..., width: int = ..., fine: bool = ..., crop: float = ..., flip: float = ..., colour: float = ..., balance: float = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...
+    def eval(self, dataset: DatasetLike, silent: Any = ..., verbose: bool = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., ray: Union[bool, str] = ..., ray_options: Optional[dict[str, Any]] = ..., **metric_params: Any) -> dict[str, Any]: ...
 
 class SelfieSegmentationLearner(NativeLearner):
     """Separates a person near the camera from the background.
@@ -247,7 +247,77 @@ class TiledSegmentationLearner(NativeLearner):
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., tile: int = ..., tile_overlap: int = ..., whole: bool = ..., time_budget: float = ..., max_tiles: int = ..., detail_threshold: float = ..., change_threshold: float = ..., memory: int = ..., rotation: int = ...) -> Iterator[Heatmap]: ...
 
-class YOLOv8SegLearner:
-    """Not available yet: use ImportedDetectorLearner with an ONNX export, which returns masks, or DeeplabLearner for classes."""
+class YOLOv8SegLearner(SegmentedObjects):
+    """Runs your own detector, exported to ONNX by another tool; recognises the layout of its outputs.
 
-    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
+    Task: semantic_segmentation. ``infer`` takes:
+
+        image: Image.
+
+    and returns: BoundingBoxList.
+
+    Args:
+        threshold: Score below which detections are dropped. (default 0.25; 0 to 1; live: may change while
+            running, and for one call of infer)
+        iou_threshold: IoU above which candidates of one class count as one object; detections and queries are not
+            suppressed. (default 0.65; 0 to 1; live: may change while running, and for one call of infer)
+        max_detections: Maximum number of boxes per image. (default 300; 1 to 1000; live: may change while
+            running, and for one call of infer)
+        multi_label: Whether a candidate may be a detection of several classes, or of that with the highest score
+            only. (default False; live: may change while running, and for one call of infer)
+        suppression: Method of non-maximum suppression of upright candidates; rotated ones have Fast NMS by the
+            probabilistic IoU. (default 'hard'; one of 'hard', 'soft', 'fast', 'cluster'; live: may change while
+            running, and for one call of infer)
+        layout: What the rows of the outputs are. (default 'auto'; one of 'auto', 'candidates', 'grid_candidates',
+            'detections', 'queries')
+        boxes: The four values of a box. (default 'auto'; one of 'auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx')
+        unit: Unit of boxes. (default 'auto'; one of 'auto', 'pixels', 'fractions')
+        scores: What the class scores are. (default 'auto'; one of 'auto', 'probabilities', 'sigmoid', 'softmax')
+        objectness: Whether rows of candidates have an objectness. (default 'auto'; one of 'auto', 'present',
+            'absent')
+        row_order: Order of the values of a detection in one output. (default 'auto'; one of 'auto',
+            'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class')
+        angle: Whether the boxes are rotated; the segment of a rotated box is its polygon. (default 'auto'; one of
+            'auto', 'absent', 'last')
+        masks: Whether the detections have masks. (default 'auto'; one of 'auto', 'absent', 'prototypes')
+        first_class: Class index of the network that is the first of the class names; recognised from the network
+            if absent. (default None; 0 to 1000)
+        resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
+            'top_left_truncated', 'stretch')
+        padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
+            255)
+        colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
+        levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
+            '-1_1', 'imagenet')
+        size: Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for
+            most. (default None; 32 to 4096 px)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    iou_threshold: float
+    max_detections: int
+    multi_label: bool
+    suppression: Literal['hard', 'soft', 'fast', 'cluster']
+    layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries']
+    boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx']
+    unit: Literal['auto', 'pixels', 'fractions']
+    scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax']
+    objectness: Literal['auto', 'present', 'absent']
+    row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class']
+    angle: Literal['auto', 'absent', 'last']
+    masks: Literal['auto', 'absent', 'prototypes']
+    first_class: Optional[int]
+    resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
+    padding: Optional[int]
+    colour: Literal['auto', 'rgb', 'bgr']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    size: Optional[int]
+    def __init__(self, model_name: Any = ..., model_path: Any = ..., device: str = ..., temp_path: str = ..., *, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., threshold: float = ..., scale: float = ..., iou_threshold: float = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'grid_candidates', 'detections', 'queries'] = ..., boxes: Literal['auto', 'xyxy', 'cxcywh', 'xywh', 'yxyx'] = ..., unit: Literal['auto', 'pixels', 'fractions'] = ..., scores: Literal['auto', 'probabilities', 'sigmoid', 'softmax'] = ..., objectness: Literal['auto', 'present', 'absent'] = ..., row_order: Literal['auto', 'box_score_class', 'class_score_box', 'batch_box_class_score', 'batch_box_score_class'] = ..., angle: Literal['auto', 'absent', 'last'] = ..., masks: Literal['auto', 'absent', 'prototypes'] = ..., first_class: Optional[int] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: Optional[int] = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], conf_thres: float = ..., iou_thres: float = ..., image_size: Any = ..., half_prec: Any = ..., agnostic_nms: Any = ..., classes: Any = ..., no_mismatch: Any = ..., verbose: Any = ..., show: Any = ..., *, max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], conf_thres: float = ..., iou_thres: float = ..., image_size: Any = ..., half_prec: Any = ..., agnostic_nms: Any = ..., classes: Any = ..., no_mismatch: Any = ..., verbose: Any = ..., show: Any = ..., *, progress: bool = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> list[BoundingBoxList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], conf_thres: float = ..., iou_thres: float = ..., image_size: Any = ..., half_prec: Any = ..., agnostic_nms: Any = ..., classes: Any = ..., no_mismatch: Any = ..., verbose: Any = ..., show: Any = ..., *, progress: bool = ..., max_detections: int = ..., multi_label: bool = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[BoundingBoxList]: ...
+    def download(self, *args: Any, **kwargs: Any) -> NoReturn: ...
+    def fit(self, *args: Any, **kwargs: Any) -> NoReturn: ...

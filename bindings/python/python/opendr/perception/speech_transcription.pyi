@@ -9,10 +9,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
-from opendr._input_value import PathLike
+from opendr._input_value import DatasetLike, PathLike
 from opendr._upstream.learners.audio import Transcription
 from opendr.engine.data import Audio, Timeseries
-from opendr.engine.datasets import Dataset
 from opendr.engine.target import WhisperTranscription
 
 class WhisperLearner(Transcription):
@@ -102,7 +101,7 @@ class WhisperLearner(Transcription):
     def infer(self, audio: Sequence[Union[Audio, Timeseries]], initial_prompt: Optional[str] = ..., *, progress: bool = ..., temperature: list[Any] = ..., compression_ratio_threshold: Optional[float] = ..., logprob_threshold: Optional[float] = ..., no_speech_threshold: Optional[float] = ..., condition_on_previous_text: bool = ..., language: Optional[str] = ..., sample_len: Optional[int] = ..., best_of: Optional[int] = ..., beam_size: Optional[int] = ..., patience: Optional[float] = ..., length_penalty: Optional[float] = ..., prompt: Optional[str] = ..., prefix: Optional[str] = ..., suppress_tokens: Optional[str] = ..., suppress_blank: bool = ..., without_timestamps: bool = ..., max_initial_timestamp: Optional[float] = ..., partial_interval: Optional[float] = ..., silence_level: float = ..., verbose: Any = ..., word_timestamps: Any = ..., prepend_punctuations: Any = ..., append_punctuations: Any = ..., fp16: Any = ...) -> list[WhisperTranscription]: ...
     @overload
     def infer(self, audio: Iterator[Union[Audio, Timeseries]], initial_prompt: Optional[str] = ..., *, progress: bool = ..., temperature: list[Any] = ..., compression_ratio_threshold: Optional[float] = ..., logprob_threshold: Optional[float] = ..., no_speech_threshold: Optional[float] = ..., condition_on_previous_text: bool = ..., language: Optional[str] = ..., sample_len: Optional[int] = ..., best_of: Optional[int] = ..., beam_size: Optional[int] = ..., patience: Optional[float] = ..., length_penalty: Optional[float] = ..., prompt: Optional[str] = ..., prefix: Optional[str] = ..., suppress_tokens: Optional[str] = ..., suppress_blank: bool = ..., without_timestamps: bool = ..., max_initial_timestamp: Optional[float] = ..., partial_interval: Optional[float] = ..., silence_level: float = ..., verbose: Any = ..., word_timestamps: Any = ..., prepend_punctuations: Any = ..., append_punctuations: Any = ..., fp16: Any = ...) -> Iterator[WhisperTranscription]: ...
-    def eval(self, dataset: Dataset, save_path_csv: Any = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., verbose: bool = ..., **metric_params: Any) -> dict[str, Any]: ...
+    def eval(self, dataset: DatasetLike, save_path_csv: Any = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., out: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., verbose: bool = ..., ray: Union[bool, str] = ..., ray_options: Optional[dict[str, Any]] = ..., **metric_params: Any) -> dict[str, Any]: ...
     @classmethod
     def download(cls, name: Any = ..., download_dir: Optional[PathLike] = ..., *, path: Optional[PathLike] = ..., mode: str = ..., verbose: bool = ..., url: Optional[str] = ..., variant: Optional[str] = ...) -> str: ...
 
