@@ -88,7 +88,7 @@ def test_every_argument_is_known(name):
     own = {key for field in entry["params"] for key in (field["name"], *field["aliases"])}
     idle = {key for key, _ in entry["without_effect"]}
     known = {
-        "init": own | fit | idle | {*BaseLearner.__signature__.parameters, "pose_estimator", "env", "path"},
+        "init": own | fit | idle | {*BaseLearner.__signature__.parameters, "pose_estimator", "env", "path", "object_name", "data_directory"},
         "infer": {port["name"] for port in entry["ports"]} | live | idle,
         "fit": fit | idle,
         "eval": live | {"silent", "use_subset", "subset_size"},

@@ -164,7 +164,7 @@ fn node_tests_of_claimed_operators_pass() {
 
 #[test]
 fn the_page_lists_every_operator() {
-    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/onnx.md")).unwrap();
+    let page = std::fs::read_to_string(crate::root().join("docs/onnx.md")).unwrap();
     let (_, list) = page.split_once("## Operators").unwrap();
     let (list, _) = list.split_once('.').unwrap();
     let listed: Vec<&str> = list.split('`').skip(1).step_by(2).collect();

@@ -1,7 +1,5 @@
 //! Damaged files: an error or a result, never a panic.
 
-use std::path::Path;
-
 use opendr_engine::Random;
 use opendr_executor::{Data, Executor, Kind, Tensor};
 use opendr_kernels::Compute;
@@ -20,7 +18,7 @@ const FILES: [&str; 5] = [
 ];
 
 fn weights() -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/weights")
+    crate::root().join("models/weights")
 }
 
 /// Opens a model and runs it, where it opens, on zeros.

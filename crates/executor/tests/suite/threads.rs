@@ -1,6 +1,5 @@
 //! The number of threads changes no bit.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use opendr_engine::Random;
@@ -9,7 +8,7 @@ use opendr_kernels::{Compute, Isa, WorkerPool};
 
 #[test]
 fn every_number_of_threads_gives_the_same_bits() {
-    let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/weights");
+    let weights = crate::root().join("models/weights");
     for (file, shape) in [
         ("bisenet/drawn_streets.onnx", vec![1, 3, 96, 128]),
         ("efficient_lps/streets.onnx", vec![1, 5, 64, 512]),

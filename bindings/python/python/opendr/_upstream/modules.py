@@ -134,7 +134,8 @@ def _runner(module: str, name: str, home: Runs) -> Any:
     """Returns the class of a learner of OpenDR whose networks another one runs; the same in all module paths of the package."""
     from opendr._native_class import native_class
 
-    package = import_module(f"opendr.{_task(module)}")
+    home_task = _task(module) or ""
+    package = import_module(f"opendr.{home_task}")
     if module != package.__name__:
         return getattr(package, name)
     path, _, of = home.by.partition(":")
@@ -142,7 +143,7 @@ def _runner(module: str, name: str, home: Runs) -> Any:
     if base is None:
         return _not_built(name, module)
     # The row is that of the package in which OpenDR has the class.
-    of_package, _, task = _task(module).rpartition(".")
+    of_package, _, task = home_task.rpartition(".")
     return native_class({**base._entry, "class_name": name, "package": of_package, "task": task}, module)
 
 
