@@ -26,7 +26,7 @@ typed! {
     opendr_calibration opendr_timeseries opendr_vector opendr_audio opendr_skeleton_sequence opendr_observation
     opendr_bounding_box_list opendr_tracking_annotation_list opendr_bounding_box_3d_list
     opendr_tracking_annotation_3d_list opendr_pose_list opendr_category opendr_heatmap
-    opendr_text_region_list opendr_speech_command
+    opendr_odometry opendr_text_region_list opendr_speech_command
     opendr_base_transcription opendr_whisper_transcription opendr_vosk_transcription opendr_rl_target
 }
 

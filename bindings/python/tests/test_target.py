@@ -22,6 +22,7 @@ from opendr.engine.target import (
     CocoBoundingBox,
     Heatmap,
     Keypoint,
+    Odometry,
     Pose,
     PoseList,
     RlTarget,
@@ -90,6 +91,8 @@ def every_target():
         Heatmap(np.array([0.5, 0.25], np.float32)),
         TextRegion("EXIT", CORNERS, 0.75),
         TextRegionList([TextRegion("EXIT", CORNERS, 0.75), TextRegion("###", CORNERS)]),
+        Odometry((0.5, 0.0, 2.0), (0.0, 0.6, 0.0, 0.8), 120),
+        Odometry(),
         SpeechCommand("stop", 0.75, (0.5, 1.25)),
         SpeechCommand(3),
         RlTarget([0.5, -1.0]),
@@ -510,6 +513,20 @@ def test_speech():
             call()
     with pytest.raises(ValueError):
         SpeechCommand("stop", 0.5, [0.5])
+
+
+def test_odometry_is_a_matrix_or_unknown():
+    half = 0.5**0.5
+    odometry = Odometry([1, 2, 3], [0, half, 0, half], 80)
+    assert odometry.data == odometry.position == (1.0, 2.0, 3.0)
+    # Turned to the right: what was ahead of the camera is now to its left.
+    ahead = odometry.matrix @ [0, 0, 1, 1]
+    np.testing.assert_allclose(ahead, [2, 2, 3, 1], atol=1e-12)
+    with pytest.raises(ValueError, match="tracking begins or is lost"):
+        Odometry().matrix  # noqa: B018
+    for call in [lambda: Odometry([1, 2, 3]), lambda: Odometry([1, 2, float("nan")], [0, 0, 0, 1])]:
+        with pytest.raises(ValueError):
+            call()
 
 
 def test_rl_target_is_an_array_and_a_number():

@@ -67,6 +67,8 @@ tasks! {
     InstanceSegmentation = "instance_segmentation";
     /// Disparity or depth from the images of two cameras.
     StereoMatching = "stereo_matching";
+    /// Motion of a camera from its images.
+    VisualOdometry = "visual_odometry";
     /// Depth of every pixel from one image.
     DepthEstimation = "depth_estimation";
     /// Ambiguity of the best position in a map of scores.

@@ -10,9 +10,9 @@ use crate::data::{
     SkeletonSequence, Timeseries, Vector, Video,
 };
 use crate::target::{
-    Action, BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, RlTarget,
-    SpeechCommand, TextRegionList, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription,
-    WhisperTranscription,
+    Action, BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, Odometry, PoseList,
+    RlTarget, SpeechCommand, TextRegionList, TrackingAnnotation3DList, TrackingAnnotationList,
+    VoskTranscription, WhisperTranscription,
 };
 use crate::{Error, Header, Result};
 
@@ -219,6 +219,7 @@ values! {
         PoseList = "poses",
         Category = "category",
         Heatmap = "heatmap",
+        Odometry = "odometry",
         TextRegionList = "texts",
         SpeechCommand = "command",
         BaseTranscription = "transcription",

@@ -94,6 +94,8 @@ pub use opendr_hands::{gesture_recognition, hand_pose_estimation};
 pub use opendr_lerobot as lerobot;
 #[cfg(feature = "multimodal")]
 pub use opendr_multimodal::multimodal_human_centric;
+#[cfg(feature = "odometry")]
+pub use opendr_odometry as visual_odometry;
 #[cfg(feature = "panoptic")]
 pub use opendr_panoptic::panoptic_segmentation;
 pub use opendr_perception_common::{regions, suppression};

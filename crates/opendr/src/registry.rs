@@ -44,6 +44,8 @@ use opendr_imitation::{ActLearner, DiffusionPolicyLearner};
 use opendr_manipulation::SingleDemoGrasp;
 #[cfg(feature = "multimodal")]
 use opendr_multimodal::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
+#[cfg(feature = "odometry")]
+use opendr_odometry::VisualOdometryLearner;
 #[cfg(feature = "panoptic")]
 use opendr_panoptic::panoptic_segmentation::{EfficientLps, EfficientPs};
 use opendr_planning::end_to_end::EndToEndPlanningRl;
@@ -170,6 +172,10 @@ pub fn registry() -> &'static Registry {
             #[cfg(feature = "stereo")]
             {
                 SemiGlobalMatching,
+            },
+            #[cfg(feature = "odometry")]
+            {
+                VisualOdometryLearner,
             },
             #[cfg(feature = "depth")]
             {

@@ -145,6 +145,7 @@ pairs! {
     PoseList(target): opendr_msgs::Pose2DArray;
     Category(target): vision_msgs::Classification;
     Heatmap(target): sensor_msgs::Image;
+    Odometry(target): nav_msgs::Odometry;
     TextRegionList(target): opendr_msgs::TextRegionArray;
     SpeechCommand(target): vision_msgs::Classification;
     BaseTranscription(target): opendr_msgs::Transcription;

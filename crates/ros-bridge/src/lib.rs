@@ -31,6 +31,7 @@ mod heatmap;
 mod image;
 mod image_with_detections;
 mod observation;
+mod odometry;
 mod point_cloud;
 mod point_cloud_with_calibration;
 mod pose_list;

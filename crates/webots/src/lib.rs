@@ -23,7 +23,7 @@ mod url;
 mod version;
 
 pub use environment::{ID, LinkKind, WebotsEnvironment, WebotsParams, registration};
-pub use export::export;
+pub use export::{WorldFiles, export};
 pub use kind::DeviceKind;
 #[cfg(feature = "webots-library")]
 pub use library::LibraryLink;

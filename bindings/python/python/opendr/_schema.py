@@ -206,6 +206,13 @@ def _write_texts(texts: target.TextRegionList) -> Fields:
     return {"type": "TextRegionList", "regions": regions}
 
 
+def _write_odometry(odometry: target.Odometry) -> Fields:
+    fields = {"type": "Odometry", "num_landmarks": odometry.num_landmarks}
+    if odometry.position is None:
+        return fields
+    return {**fields, "pose": {"position": odometry.position, "orientation": odometry.orientation}}
+
+
 def _write_command(command: target.SpeechCommand) -> Fields:
     fields = {"type": "SpeechCommand", "command": command.data, "confidence": command.confidence}
     return fields if command.span_s is None else {**fields, "span_s": command.span_s}
@@ -236,6 +243,7 @@ _WRITERS: dict[type[Any], Callable[[Any], Fields]] = {
     target.Category: _write_category,
     target.Heatmap: _write_heatmap,
     target.TextRegionList: _write_texts,
+    target.Odometry: _write_odometry,
     target.SpeechCommand: _write_command,
     target.WhisperTranscription: _write_whisper,
     target.VoskTranscription: _write_vosk,
@@ -345,6 +353,11 @@ def _read_command(fields: Fields) -> target.SpeechCommand:
     return target.SpeechCommand(fields["command"], fields["confidence"], fields.get("span_s"))
 
 
+def _read_odometry(fields: Fields) -> target.Odometry:
+    pose = fields.get("pose", {})
+    return target.Odometry(pose.get("position"), pose.get("orientation"), fields["num_landmarks"])
+
+
 _READERS: dict[str, Callable[[Fields], Any]] = {
     "BoundingBoxList": _read_boxes,
     "TrackingAnnotationList": _read_tracks,
@@ -356,6 +369,7 @@ _READERS: dict[str, Callable[[Fields], Any]] = {
     "TextRegionList": lambda fields: target.TextRegionList(
         [target.TextRegion(region["text"], region["corners"], region["confidence"]) for region in fields["regions"]]
     ),
+    "Odometry": _read_odometry,
     "SpeechCommand": _read_command,
     "RlTarget": lambda fields: target.RlTarget(fields["values"]),
     "BaseTranscription": lambda fields: target.BaseTranscription(fields["text"]),

@@ -190,6 +190,15 @@ fn texts() -> impl Strategy<Value = Value> {
         .prop_map(|(header, regions, action)| TextRegionList { header, regions, action }.into())
 }
 
+fn odometry() -> impl Strategy<Value = Value> {
+    let part = -1e6..1e6_f64;
+    let pose = ([part.clone(), part.clone(), part.clone()], [part.clone(), part.clone(), part.clone(), part]);
+    let pose = pose.prop_map(|(position, orientation)| RigidPose { position, orientation });
+    (header(), option::of(pose), any::<u32>(), action()).prop_map(|(header, pose, num_landmarks, action)| {
+        Odometry { header, pose, num_landmarks, action }.into()
+    })
+}
+
 fn command() -> impl Strategy<Value = Value> {
     (header(), name(), number(), option::of([number(), number()]), action()).prop_map(
         |(header, command, confidence, span_s, action)| {
@@ -248,6 +257,7 @@ fn target() -> impl Strategy<Value = Value> {
         category(),
         heatmap(),
         texts(),
+        odometry(),
         command(),
         rl_target(),
         transcription(),

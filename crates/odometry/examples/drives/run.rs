@@ -82,7 +82,7 @@ impl Runner {
             baseline: f64::from(options.baseline),
         };
         let camera_height = if has_height { options.camera_height } else { 0.0 };
-        let params = OdometryParams { threads, camera_height, ..OdometryParams::default() };
+        let params = OdometryParams { tracking_threads: threads, camera_height, ..OdometryParams::default() };
         let odometry = VisualOdometry::new(camera, kind, params)?;
         Ok(Self { odometry, kind, has_height, seconds: 0.0, cpu: 0.0, lost: 0 })
     }

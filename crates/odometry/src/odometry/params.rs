@@ -37,5 +37,5 @@ pub struct OdometryParams {
     pub loop_inliers: usize,
     /// Number of threads that follow corners; it changes no result.
     #[param(default = 1, range = 1..=8)]
-    pub threads: usize,
+    pub tracking_threads: usize,
 }

@@ -194,6 +194,11 @@ impl VisualOdometry {
         Trajectory::new(poses.collect()).unwrap_or_default()
     }
 
+    /// Returns the pose of the last frame that has one, as loops have moved it.
+    pub fn pose(&self) -> Pose {
+        self.pose
+    }
+
     /// Returns whether the scale of the trajectory is that of the world: for a stereo pair and depths, and for a single camera whose height
     /// is given and that has seen the ground.
     pub fn is_metric(&self) -> bool {
@@ -316,13 +321,13 @@ impl VisualOdometry {
         };
         self.found.clear();
         self.found.resize(self.landmarks.len(), None);
-        let each = self.landmarks.len().div_ceil(self.params.threads).max(1);
+        let each = self.landmarks.len().div_ceil(self.params.tracking_threads).max(1);
         let mut parts = self.found.chunks_mut(each).zip(landmarks.chunks(each));
         let work = |(found, landmarks): (&mut [Option<Match>], &[Landmark])| {
             found.iter_mut().zip(landmarks).for_each(|(found, landmark)| *found = search(landmark));
         };
         let own = parts.next();
-        if self.params.threads == 1 {
+        if self.params.tracking_threads == 1 {
             own.into_iter().for_each(work);
             return;
         }

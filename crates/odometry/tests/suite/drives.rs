@@ -44,7 +44,7 @@ fn every_camera_drifts_by_less_than_two_percent() {
     let mut all = [CameraKind::Mono, CameraKind::Stereo, CameraKind::Depth]
         .map(|kind| (kind, odometry(&drive, kind, OdometryParams::default())));
     let mut threaded =
-        odometry(&drive, CameraKind::Stereo, OdometryParams { threads: 2, ..Default::default() });
+        odometry(&drive, CameraKind::Stereo, OdometryParams { tracking_threads: 2, ..Default::default() });
     for number in 0..drive.frames() {
         let frame = drive.render(number).unwrap();
         for (kind, odometry) in &mut all {

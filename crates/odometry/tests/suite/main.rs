@@ -4,3 +4,4 @@
 
 mod allocation;
 mod drives;
+mod learner;

@@ -6,12 +6,12 @@ use opendr_engine::data::{
 };
 use opendr_engine::target::{
     BaseTranscription, BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Category, Classes,
-    Heatmap, Keypoint, Name, Pose, PoseList, RlTarget, Skeleton, SpeechCommand, TextRegion, TextRegionList,
-    TrackingAnnotation, TrackingAnnotation3D, TrackingAnnotation3DList, TrackingAnnotationList,
-    VoskTranscription, WhisperSegment, WhisperTranscription,
+    Heatmap, Keypoint, Name, Odometry, Pose, PoseList, RigidPose, RlTarget, Skeleton, SpeechCommand,
+    TextRegion, TextRegionList, TrackingAnnotation, TrackingAnnotation3D, TrackingAnnotation3DList,
+    TrackingAnnotationList, VoskTranscription, WhisperSegment, WhisperTranscription,
 };
 use opendr_engine::{Header, Value, ValueType};
-use opendr_messages::{Message, MessageType, WireFormat};
+use opendr_messages::{Message, MessageType, WireFormat, geometry_msgs, nav_msgs};
 use opendr_ros_bridge::{RosBridge, message_types};
 
 fn header() -> Header {
@@ -142,6 +142,10 @@ fn values(value_type: ValueType) -> Vec<Value> {
             let corners = [[1.0, 2.0], [9.5, 2.5], [9.0, 6.0], [1.0, 5.5]];
             TextRegionList::from(vec![TextRegion::new("EXIT", corners, 0.75)]).into()
         }
+        ValueType::Odometry => {
+            let pose = RigidPose { position: [0.5, -1.0, 2.0], orientation: [0.5, -0.5, 0.5, 0.5] };
+            return [Odometry::new(pose, 0), Odometry::default()].map(with_header).into();
+        }
         ValueType::SpeechCommand => SpeechCommand::new(7, 0.25).into(),
         ValueType::BaseTranscription => {
             BaseTranscription { text: "grün".into(), ..Default::default() }.into()
@@ -232,4 +236,23 @@ fn classes_are_written_by_name_or_index() {
     assert_eq!(numbers.boxes, boxes.boxes);
     let info = opendr_ros_bridge::label_info(&boxes.classes, &header(), 0.5).unwrap();
     assert_eq!((info.class_map[1].class_id, info.class_map[1].class_name.as_str()), (1, "bicycle"));
+}
+
+#[test]
+fn odometry_has_the_axes_of_ros() {
+    // Two metres ahead, one to the right, turned to the right by a quarter: about the axis that points down.
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let pose = RigidPose { position: [1.0, 0.0, 2.0], orientation: [0.0, half, 0.0, half] };
+    let odometry = Odometry { header: Header::new(5, "left_optical_frame"), ..Odometry::new(pose, 80) };
+    let bridge = RosBridge::default();
+    let message: nav_msgs::Odometry = bridge.to_message(&odometry).unwrap();
+    assert_eq!((&*message.header.frame_id, &*message.child_frame_id), ("odom", "left_frame"));
+    let geometry_msgs::Pose { position, orientation } = &message.pose.pose;
+    assert_eq!([position.x, position.y, position.z], [2.0, -1.0, 0.0]);
+    assert_eq!([orientation.x, orientation.y, orientation.z, orientation.w], [0.0, 0.0, -half, half]);
+    let mut wild = message.clone();
+    wild.pose.pose.position.x = f64::NAN;
+    assert_eq!(bridge.from_message::<Odometry, _>(wild).unwrap().pose, None);
+    let unknown: nav_msgs::Odometry = bridge.to_message(&Odometry::default()).unwrap();
+    assert_eq!(unknown.pose.covariance[35], 9999.0);
 }

@@ -2,7 +2,7 @@
 
 use opendr_engine::Result;
 
-use super::surface::{Form, Surface, Texel};
+use super::surface::{Form, Surface, Texel, TexturedMesh};
 use crate::raycast::{Body, Shape, Vector};
 
 /// A generated subject: the parts that a camera sees, all within a radius of 1.
@@ -39,6 +39,14 @@ impl Asset {
     /// Returns the bodies of the parts.
     pub fn bodies(&self) -> impl Iterator<Item = &Body> {
         self.parts.iter().map(|part| &part.body)
+    }
+
+    /// Returns the parts for another renderer: the body, and the texture of its mesh.
+    ///
+    /// # Errors
+    /// None of a generated asset.
+    pub fn textured_parts(&self) -> Result<Vec<(&Body, TexturedMesh)>> {
+        self.parts.iter().map(|part| Ok((&part.body, part.surface.textured_mesh()?))).collect()
     }
 
     /// Triangles of all parts.

@@ -14,9 +14,10 @@ pub(super) struct ImageSensor {
 }
 
 /// The tangent of half the angle of view: a subject of radius 1 fills the image from 2.7 radii.
-const HALF_WIDTH: f32 = 0.38;
+pub(super) const HALF_WIDTH: f32 = 0.38;
 const RANGE: f32 = 8.0;
-const OCCLUDER: [f32; 3] = [0.45, 0.42, 0.38];
+/// Shares of red, green and blue light that panels and poles reflect.
+pub const OCCLUDER: [f32; 3] = [0.45, 0.42, 0.38];
 
 impl ImageSensor {
     pub fn new(side: usize) -> Result<Self> {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
+use opendr_engine::data::Image;
 
 use super::octahedron;
 use crate::raycast::{Mesh, Vector, along, cross, dot, minus, unit};
@@ -20,6 +21,8 @@ pub(super) trait Form {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Surface {
     pub mesh: Arc<Mesh>,
+    /// Vertices of the mesh, in rows of the square of directions.
+    grid: Arc<[Vector]>,
     side: usize,
     texels: Vec<Texel>,
 }
@@ -34,32 +37,20 @@ pub(super) struct Texel {
 impl Surface {
     /// Creates the surface of a form, with `2 cells^2` triangles and `side^2` texels.
     pub fn new(cells: usize, side: usize, form: &impl Form) -> Result<Self> {
-        let place = |at: usize, count: usize| 2.0 * at as f32 / count as f32 - 1.0;
         let row = cells + 1;
         let vertex = |at: usize| {
-            let direction = octahedron::direction([place(at % row, cells), place(at / row, cells)]);
+            let direction = octahedron::direction([at % row, at / row].map(|at| place(at, cells)));
             along([0.0; 3], direction, form.radius(direction))
         };
-        let vertices: Vec<Vector> = (0..row * row).map(vertex).collect();
-        let corner = |column: usize, line: usize| (line * row + column) as u32;
-        let faces: Vec<[u32; 3]> = (0..cells * cells)
-            .flat_map(|cell| {
-                let (x, y) = (cell % cells, cell / cells);
-                let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x, y + 1), corner(x + 1, y + 1)];
-                // The diagonal runs along the fold of the square, so that no triangle lies across an edge of the octahedron.
-                match (2 * x < cells) == (2 * y < cells) {
-                    true => [[a, b, c], [b, d, c]],
-                    false => [[a, b, d], [a, d, c]],
-                }
-            })
-            .collect();
+        let grid: Arc<[Vector]> = (0..row * row).map(vertex).collect();
         let middle = |at: usize| (2 * at + 1) as f32 / side as f32 - 1.0;
         let texel = |at: usize| {
             let direction = octahedron::direction([middle(at % side), middle(at / side)]);
             Texel { colour: form.colour(direction), normal: normal(direction, form) }
         };
         Ok(Self {
-            mesh: Arc::new(Mesh::new(&vertices, &faces)?),
+            mesh: Arc::new(Mesh::new(&grid, &faces(cells))?),
+            grid,
             side,
             texels: (0..side * side).map(texel).collect(),
         })
@@ -73,6 +64,54 @@ impl Surface {
         });
         self.texels[place[1] * self.side + place[0]]
     }
+
+    /// Returns the surface for another renderer.
+    pub fn textured_mesh(&self) -> Result<TexturedMesh> {
+        let row = self.grid.len().isqrt();
+        let share = |at: usize| 0.5 * (1.0 + place(at, row - 1));
+        let coordinate = |at: usize| [share(at % row), 1.0 - share(at / row)];
+        let levels = self.texels.iter().flat_map(|texel| texel.colour);
+        let levels = levels.map(|level| (255.0 * level).round() as u8).collect();
+        Ok(TexturedMesh {
+            vertices: self.grid.to_vec(),
+            texture_coordinates: (0..self.grid.len()).map(coordinate).collect(),
+            faces: faces(row - 1),
+            texture: Image::from_rgb8(levels, self.side, self.side)?,
+        })
+    }
+}
+
+/// A triangle mesh with a texture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TexturedMesh {
+    /// Vertices.
+    pub vertices: Vec<Vector>,
+    /// Place of each vertex in the texture: to the right from 0 to 1, and upwards from 0 to 1.
+    pub texture_coordinates: Vec<[f32; 2]>,
+    /// Vertices of each triangle, counter-clockwise seen from outside.
+    pub faces: Vec<[u32; 3]>,
+    /// Shares of reflected light, as levels of 255.
+    pub texture: Image,
+}
+
+/// The coordinate, in -1..=1, of line `at` of `count`.
+fn place(at: usize, count: usize) -> f32 {
+    2.0 * at as f32 / count as f32 - 1.0
+}
+
+/// Returns the triangles of a grid of `cells` times `cells`.
+fn faces(cells: usize) -> Vec<[u32; 3]> {
+    let corner = |column: usize, line: usize| (line * (cells + 1) + column) as u32;
+    let cell = |cell: usize| {
+        let (x, y) = (cell % cells, cell / cells);
+        let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x, y + 1), corner(x + 1, y + 1)];
+        // The diagonal runs along the fold of the square, so that no triangle lies across an edge of the octahedron.
+        match (2 * x < cells) == (2 * y < cells) {
+            true => [[a, b, c], [b, d, c]],
+            false => [[a, b, d], [a, d, c]],
+        }
+    };
+    (0..cells * cells).flat_map(cell).collect()
 }
 
 /// The outward normal, from differences over a hundredth of the radius.

@@ -1,9 +1,11 @@
 use opendr_engine::Random;
+use opendr_engine::data::PixelFormat;
 use opendr_engine::environment::{Environment, ResetOptions};
 use opendr_engine::rig::{Limit, ViewRig as _};
 use opendr_engine::target::Action;
 
 use super::*;
+use crate::raycast::{Vector, along};
 use crate::{make, make_vec};
 
 fn plain(azimuth: f64) -> Conditions {
@@ -169,4 +171,37 @@ fn galleries_are_other_persons() {
     let views = first(0).into_iter().zip(first(1));
     assert!(views.filter(|(one, other)| one != other).count() > 0);
     assert!(make_vec("SphereView-Face-v1", crate::vector::VectorOptions::new(2)).is_ok());
+}
+
+#[test]
+fn textured_meshes_have_the_colours_of_the_subject() {
+    for subject in Subject::ALL {
+        let asset = Asset::generate(subject, 3, 0).unwrap();
+        let [mut upright, mut inverted, mut all] = [0; 3];
+        for (number, (body, mesh)) in asset.textured_parts().unwrap().iter().enumerate() {
+            let side = mesh.texture.width() as f32;
+            let pixels = mesh.texture.hwc_u8(PixelFormat::Rgb);
+            for face in &mesh.faces {
+                let mean =
+                    |of: &dyn Fn(usize) -> f32| face.map(|at| of(at as usize)).iter().sum::<f32>() / 3.0;
+                let point: Vector = std::array::from_fn(|axis| mean(&|at| mesh.vertices[at][axis]));
+                let [right, up] = [0, 1].map(|axis| mean(&|at| mesh.texture_coordinates[at][axis]));
+                let world =
+                    (0..3).fold(body.position(), |sum, axis| along(sum, body.axes()[axis], point[axis]));
+                let (texel, _) = asset.texel(number, world).unwrap();
+                let is_near = |down: f32| {
+                    let pixel = (down * side) as usize * side as usize + (right * side) as usize;
+                    let level = |part: usize| f32::from(pixels[3 * pixel + part]) / 255.0;
+                    (0..3).all(|part| (texel.colour[part] - level(part)).abs() < 0.02)
+                };
+                upright += usize::from(is_near(1.0 - up));
+                inverted += usize::from(is_near(up));
+                all += 1;
+            }
+        }
+        // The middle of a triangle and the middle of its corners in the texture may be neighbours.
+        assert!(upright * 20 > all * 19, "{subject:?}: {upright} of {all}");
+        // Every part of a figure has one colour.
+        assert!(inverted < upright || subject == Subject::Pose, "{subject:?}: {inverted}");
+    }
 }

@@ -5,7 +5,7 @@ use opendr_engine::rig::{Achieved, ViewAxis, ViewPose, ViewRig, ViewSphere};
 use opendr_engine::target::{Action, ActionBase as _};
 use opendr_engine::{Random, Result};
 
-use super::camera_image::ImageSensor;
+use super::camera_image::{HALF_WIDTH, ImageSensor};
 use super::enclosure::panels;
 use super::{Asset, Conditions};
 use crate::raycast::{Body, Pose, Scene, Shape, Vector};
@@ -80,6 +80,21 @@ impl SphereWorld {
         self.side
     }
 
+    /// Returns the angle of view of the camera in rad, horizontally and vertically.
+    pub fn field_of_view(&self) -> f64 {
+        2.0 * f64::from(HALF_WIDTH).atan()
+    }
+
+    /// Returns the subject of this episode.
+    pub fn asset(&self) -> &Asset {
+        &self.asset
+    }
+
+    /// Returns the panels of the enclosure and the pole, if there is one, in the subject's frame; their colour is [`OCCLUDER`].
+    pub fn occluders(&self) -> &[Body] {
+        &self.scene.bodies()[self.asset.bodies().count()..]
+    }
+
     /// Returns the conditions of this episode.
     pub fn conditions(&self) -> &Conditions {
         &self.conditions
@@ -102,8 +117,8 @@ impl SphereWorld {
         sensor.capture((scene, asset), &pose, conditions, *motion, noise, pixels);
     }
 
-    /// Position and axes of the camera in the subject's frame.
-    fn camera_pose(&self) -> Pose {
+    /// Returns position and axes of the camera in the subject's frame.
+    pub fn camera_pose(&self) -> Pose {
         let (pose, tilt) = (self.true_pose(), self.conditions.tilt);
         let ((sine, cosine), (high, level)) = (sine_cosine(pose.azimuth), sine_cosine(pose.elevation));
         let outward = [level * cosine, level * sine, high];

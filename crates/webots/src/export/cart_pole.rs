@@ -2,13 +2,12 @@
 
 use super::episode::Episode;
 use super::node::Node;
-use super::world::{Physics, World, cuboid, mass, placed, robot, shape};
+use super::world::{Physics, UPRIGHT, World, cuboid, mass, placed, robot, shape};
 
 const CART_MASS: f64 = 1.0;
 const POLE_MASS: f64 = 0.1;
 const POLE_LENGTH: f64 = 1.0;
 const CART_HEIGHT: f64 = 0.2;
-const UPRIGHT: [f64; 4] = [0.0, 0.0, 1.0, 0.0];
 
 pub(super) fn world(episode: &Episode) -> World {
     let [x, speed, angle, turning] = [0, 1, 2, 3].map(|index| episode.number(index));

@@ -1,11 +1,10 @@
 //! A link that hangs on a hinge about the y axis.
 
 use super::node::Node;
-use super::world::{cuboid, mass, placed, shape};
+use super::world::{UPRIGHT, cuboid, mass, placed, shape};
 
 const LENGTH: f64 = 1.0;
 const MASS: f64 = 1.0;
-const UPRIGHT: [f64; 4] = [0.0, 0.0, 1.0, 0.0];
 
 /// A link of 1 m and 1 kg; at angle 0 it hangs down from its joint.
 pub(super) struct Link {

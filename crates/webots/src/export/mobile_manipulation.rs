@@ -7,11 +7,10 @@ use opendr_simulation::mobile_manipulation::{MobileManipulation, MobileManipulat
 use super::episode::Episode;
 use super::node::Node;
 use super::rotation::axis_angle;
-use super::world::{Physics, World, cuboid, placed, robot, shape};
+use super::world::{Physics, UPRIGHT, World, cuboid, placed, robot, shape};
 
 /// Side of the base and its height, m.
 const BASE: [f64; 3] = [0.65, 0.65, 0.3];
-const LEVEL: [f64; 4] = [0.0, 0.0, 1.0, 0.0];
 const THICKNESS: f64 = 0.07;
 
 pub(super) fn world(episode: &Episode) -> Result<World> {
@@ -36,8 +35,8 @@ pub(super) fn world(episode: &Episode) -> Result<World> {
     let [x, y, yaw] = environment.base().unwrap_or_default();
     let chain = SerialChain::from_urdf(SERVICE_ARM, "wrist")?;
     let mut parts = vec![
-        placed([0.0, 0.0, BASE[2] / 2.0], LEVEL, vec![shape(cuboid(BASE), [0.8, 0.82, 0.86])]),
-        placed([-0.1, 0.0, 0.6], LEVEL, vec![shape(cuboid([0.3, 0.35, 0.7]), [0.6, 0.63, 0.7])]),
+        placed([0.0, 0.0, BASE[2] / 2.0], UPRIGHT, vec![shape(cuboid(BASE), [0.8, 0.82, 0.86])]),
+        placed([-0.1, 0.0, 0.6], UPRIGHT, vec![shape(cuboid([0.3, 0.35, 0.7]), [0.6, 0.63, 0.7])]),
         Node::new("GPS").text("name", "position"),
         Node::new("InertialUnit").text("name", "orientation"),
     ];
@@ -57,7 +56,7 @@ fn marker(number: usize, goal: &Transform) -> Node {
         centre[axis] = 0.075;
         let mut colour = [0.15; 3];
         colour[axis] = 0.9;
-        placed(centre, LEVEL, vec![shape(cuboid(size), colour)])
+        placed(centre, UPRIGHT, vec![shape(cuboid(size), colour)])
     };
     Node::defined(&format!("GOAL_{number}"), "Solid")
         .numbers("translation", &goal.position)
@@ -77,7 +76,7 @@ fn arm(chain: &SerialChain, angles: &[f64; 7]) -> Node {
         let length = end.iter().map(|part| part * part).sum::<f64>().sqrt();
         // The links lie along x.
         let link = cuboid([length.max(THICKNESS), THICKNESS, THICKNESS]);
-        let link = placed([length / 2.0, 0.0, 0.0], LEVEL, vec![shape(link, [0.2, 0.3, 0.55])]);
+        let link = placed([length / 2.0, 0.0, 0.0], UPRIGHT, vec![shape(link, [0.2, 0.3, 0.55])]);
         let children = [vec![link], inner.take().into_iter().collect()].concat();
         let solid = Node::new("Solid")
             .numbers("translation", &turned.position)

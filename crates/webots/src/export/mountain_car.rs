@@ -2,7 +2,7 @@
 
 use super::episode::Episode;
 use super::node::Node;
-use super::world::{Physics, World, cuboid, placed, robot, shape};
+use super::world::{Physics, UPRIGHT, World, cuboid, placed, robot, shape};
 
 /// Ends of the track.
 const TRACK: (f64, f64) = (-1.2, 0.6);
@@ -26,7 +26,7 @@ pub(super) fn world(episode: &Episode) -> World {
     let physics = Physics { step_ms: 32.0, gravity: 9.81 };
     World::new(episode, &physics, [-0.3, -3.0, 0.7], [0.0, 0.0, 1.0, std::f64::consts::FRAC_PI_2])
         .with(hill())
-        .with(placed([GOAL, 0.1, height(GOAL) + 0.1], [0.0, 0.0, 1.0, 0.0], vec![flag]))
+        .with(placed([GOAL, 0.1, height(GOAL) + 0.1], UPRIGHT, vec![flag]))
         .with(robot)
 }
 

@@ -60,8 +60,13 @@ impl Node {
 
     #[must_use]
     pub fn text(self, name: &'static str, text: &str) -> Self {
-        let quoted = text.replace('\\', "\\\\").replace('"', "\\\"");
-        self.words(name, &format!("\"{quoted}\""))
+        self.words(name, &quoted(text))
+    }
+
+    #[must_use]
+    pub fn list_of_texts(self, name: &'static str, texts: &[&str]) -> Self {
+        let texts: Vec<_> = texts.iter().copied().map(quoted).collect();
+        self.words(name, &format!("[ {} ]", texts.join(", ")))
     }
 
     #[must_use]
@@ -100,4 +105,8 @@ impl fmt::Display for Node {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.write(0, f)
     }
+}
+
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
 }

@@ -11,7 +11,7 @@ use super::gantry::{Drive, gantry};
 use super::node::Node;
 use super::rotation::axis_angle;
 use super::solid::{prisms, standing};
-use super::world::{Physics, World, cuboid, placed, shape};
+use super::world::{Physics, UPRIGHT, World, cuboid, placed, shape};
 
 /// Height of bodies, m.
 const HEIGHT: f64 = 0.03;
@@ -33,9 +33,9 @@ pub(super) fn push(episode: &Episode) -> Result<World> {
     let mut world = table(episode, episode.params::<PlanarPushParams>()?.table_friction);
     let solids = environment.solids();
     let [pusher, tee] = &solids[..] else { return Ok(world) };
-    let (hand, bounds) = prisms(pusher, HEIGHT, &[STEEL], |_| true);
+    let (hand, bounds) = prisms(pusher, HEIGHT, STEEL, |_| true);
     let drives = plane(pusher, planar_push::MAX_SPEED);
-    world = world.with(standing("tee", tee, HEIGHT, &[RED]));
+    world = world.with(standing("tee", tee, HEIGHT, RED));
     Ok(world.with(gantry("pusher", &drives, hand, Some(bounds), Vec::new())))
 }
 
@@ -47,9 +47,9 @@ pub(super) fn peg(episode: &Episode) -> Result<World> {
     let [gripper, peg, post, wall] = &solids[..] else { return Ok(world) };
     let [fast, turn, open] = planar_peg::MAX_SPEEDS;
     for (name, solid, colour) in [("peg", peg, WOOD), ("post", post, GREY), ("wall", wall, GREY)] {
-        world = world.with(standing(name, solid, HEIGHT, &[colour]));
+        world = world.with(standing(name, solid, HEIGHT, colour));
     }
-    let (mut hand, palm) = prisms(gripper, HEIGHT, &[STEEL], |prism| prism.slides == 0.0);
+    let (mut hand, palm) = prisms(gripper, HEIGHT, STEEL, |prism| prism.slides == 0.0);
     hand.extend(fingers(gripper, open));
     let mut drives = plane(gripper, fast);
     drives.push(Drive::turning("turn", gripper.pose[2], turn, 2.0));
@@ -61,7 +61,7 @@ pub(super) fn grasp(episode: &Episode) -> Result<World> {
     let environment = episode.environment::<PlanarGrasp>()?;
     let camera = environment.camera();
     let world = table(episode, 0.4);
-    let object = standing("object", &environment.solid()?, GRASP_HEIGHT, &[WOOD]);
+    let object = standing("object", &environment.solid()?, GRASP_HEIGHT, WOOD);
     let finger = |side: f64| Prism {
         corners: [[-0.005, -0.01], [0.005, -0.01], [0.005, 0.01], [-0.005, 0.01]]
             .map(|[x, y]: [f64; 2]| [x + side * 0.005, y])
@@ -106,7 +106,7 @@ fn plane(solid: &Solid, speed: f64) -> Vec<Drive> {
 fn fingers(gripper: &Solid, speed: f64) -> Vec<Node> {
     let sides = [("right finger", 1.0), ("left finger", -1.0)];
     let joint = |(name, side): (&'static str, f64)| {
-        let (shapes, bounds) = prisms(gripper, HEIGHT, &[STEEL], |prism| prism.slides * side > 0.0);
+        let (shapes, bounds) = prisms(gripper, HEIGHT, STEEL, |prism| prism.slides * side > 0.0);
         Drive::sliding(name, [side, 0.0, 0.0], gripper.slide, speed, GRIP).joint(shapes, Some(bounds))
     };
     sides.into_iter().map(joint).collect()
@@ -116,10 +116,10 @@ fn fingers(gripper: &Solid, speed: f64) -> Vec<Node> {
 fn table(episode: &Episode, friction: f64) -> World {
     let physics = Physics { step_ms: 10.0, gravity: 9.81 };
     let top = cuboid([0.9, 0.9, 0.04]);
-    let table = placed([0.0, 0.0, -0.02], [0.0, 0.0, 1.0, 0.0], vec![shape(top.clone(), TABLE)]);
+    let below = |node| placed([0.0, 0.0, -0.02], UPRIGHT, vec![node]);
     let node = Node::new("Solid")
-        .nodes("children", vec![table])
+        .nodes("children", vec![below(shape(top.clone(), TABLE))])
         .text("name", "table")
-        .node("boundingObject", placed([0.0, 0.0, -0.02], [0.0, 0.0, 1.0, 0.0], vec![top]));
+        .node("boundingObject", below(top));
     World::new(episode, &physics, [-0.6, 0.0, 0.9], [0.0, 1.0, 0.0, 0.95]).with_friction(friction).with(node)
 }

@@ -5,9 +5,7 @@ use opendr_simulation::quad_track::QuadTrack;
 
 use super::episode::Episode;
 use super::node::Node;
-use super::world::{Physics, World, cuboid, robot, shape};
-
-const LEVEL: [f64; 4] = [0.0, 0.0, 1.0, 0.0];
+use super::world::{Physics, UPRIGHT, World, cuboid, robot, shape};
 
 pub(super) fn world(episode: &Episode) -> Result<World> {
     let environment = episode.environment::<QuadTrack>()?;
@@ -21,7 +19,7 @@ pub(super) fn world(episode: &Episode) -> Result<World> {
         Node::new("InertialUnit").text("name", "orientation"),
         Node::new("Gyro").text("name", "gyro"),
     ];
-    let robot = robot("quadrotor", body).numbers("translation", &position).numbers("rotation", &LEVEL);
+    let robot = robot("quadrotor", body).numbers("translation", &position).numbers("rotation", &UPRIGHT);
     let marker = Node::defined("REFERENCE", "Solid")
         .numbers("translation", &reference)
         .nodes("children", vec![shape(Node::new("Sphere").number("radius", 0.05), [0.9, 0.2, 0.2])])

@@ -2,6 +2,8 @@
 
 use opendr_simulation::raycast::Vector;
 
+use super::world::UPRIGHT;
+
 /// Returns axis and angle of the rotation whose axes these are.
 pub(super) fn axis_angle(axes: [Vector; 3]) -> [f64; 4] {
     // Column `j` of the matrix is axis `j`.
@@ -10,7 +12,7 @@ pub(super) fn axis_angle(axes: [Vector; 3]) -> [f64; 4] {
     let sine = twice.iter().map(|part| part * part).sum::<f64>().sqrt();
     let angle = sine.atan2(at(0, 0) + at(1, 1) + at(2, 2) - 1.0);
     if angle < 1e-9 {
-        return [0.0, 0.0, 1.0, 0.0];
+        return UPRIGHT;
     }
     if sine > 1e-4 {
         return [twice[0] / sine, twice[1] / sine, twice[2] / sine, angle];
@@ -36,6 +38,6 @@ mod tests {
         let half = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0]];
         assert!(close(axis_angle(half), [0.0, 1.0, 0.0, std::f64::consts::PI]));
         let none = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-        assert!(close(axis_angle(none), [0.0, 0.0, 1.0, 0.0]));
+        assert!(close(axis_angle(none), UPRIGHT));
     }
 }

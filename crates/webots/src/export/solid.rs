@@ -3,29 +3,23 @@
 use opendr_simulation::solids::{Prism, Solid};
 
 use super::node::Node;
-use super::world::{mass, placed, shape};
+use super::world::{UPRIGHT, mass, placed, shape};
 
-const LEVEL: [f64; 4] = [0.0, 0.0, 1.0, 0.0];
-
-/// Returns prisms of a `height`, from the origin upwards, in a colour each, and their bounding object. `keep` chooses the prisms.
+/// Returns prisms of a `height`, from the origin upwards, and their bounding object. `keep` chooses the prisms.
 pub(super) fn prisms(
     solid: &Solid,
     height: f64,
-    colours: &[[f64; 3]],
+    colour: [f64; 3],
     keep: impl Fn(&Prism) -> bool,
 ) -> (Vec<Node>, Node) {
-    let chosen: Vec<_> = solid.prisms.iter().enumerate().filter(|(_, prism)| keep(prism)).collect();
-    let geometries = |(at, prism): &(usize, &Prism)| {
-        let colour = colours.get(*at).or(colours.last()).copied().unwrap_or([0.6, 0.6, 0.6]);
+    let chosen = solid.prisms.iter().filter(|prism| keep(prism));
+    let parts = chosen.map(|prism| {
         let (geometry, centre) = extruded(prism, height);
-        placed(centre, LEVEL, vec![shape(geometry, colour)])
-    };
-    let bounds = |(_, prism): &(usize, &Prism)| {
-        let (geometry, centre) = extruded(prism, height);
-        placed(centre, LEVEL, vec![geometry])
-    };
-    let shapes = chosen.iter().map(geometries).collect();
-    (shapes, Node::new("Group").nodes("children", chosen.iter().map(bounds).collect()))
+        let bounds = placed(centre, UPRIGHT, vec![geometry.clone()]);
+        (placed(centre, UPRIGHT, vec![shape(geometry, colour)]), bounds)
+    });
+    let (shapes, bounds) = parts.unzip();
+    (shapes, Node::new("Group").nodes("children", bounds))
 }
 
 /// Returns the geometry of a prism, and where its centre is.
@@ -54,9 +48,9 @@ fn extruded(prism: &Prism, height: f64) -> (Node, [f64; 3]) {
 }
 
 /// Returns a solid that stands on the table and is found by `name`; with physics if it can move.
-pub(super) fn standing(name: &str, solid: &Solid, height: f64, colours: &[[f64; 3]]) -> Node {
+pub(super) fn standing(name: &str, solid: &Solid, height: f64, colour: [f64; 3]) -> Node {
     let [x, y, angle] = solid.pose;
-    let (shapes, bounds) = prisms(solid, height, colours, |_| true);
+    let (shapes, bounds) = prisms(solid, height, colour, |_| true);
     let node = Node::defined(&name.to_uppercase(), "Solid")
         .numbers("translation", &[x, y, 0.0])
         .numbers("rotation", &[0.0, 0.0, 1.0, angle])

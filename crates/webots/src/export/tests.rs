@@ -25,35 +25,30 @@ fn check(world: &str) {
 }
 
 #[test]
-fn every_world_with_known_bodies_is_exported() {
+fn every_world_is_exported() {
     for id in Registry::builtin().ids() {
-        match export(id, &ParamMap::new(), 3) {
-            Ok(world) => {
-                check(&world);
-                assert!(world.starts_with("#VRML_SIM R2023b utf8\n"), "{id}");
-                assert!(
-                    world.contains(&format!("title \"{id}, seed 3"))
-                        && world.contains("controller \"<extern>\"")
-                );
-                assert_eq!(world, export(id, &ParamMap::new(), 3).unwrap());
-                assert_ne!(world, export(id, &ParamMap::new(), 4).unwrap(), "{id}");
-            }
-            Err(error) => {
-                assert_eq!(error.kind(), ErrorKind::Unsupported, "{error}");
-                assert!(id.starts_with("SphereView-"), "{id}: {error}");
-            }
-        }
+        let files = export(id, &ParamMap::new(), 3).unwrap();
+        let world = &files.world;
+        check(world);
+        assert!(world.starts_with("#VRML_SIM R2023b utf8\n"), "{id}");
+        assert!(
+            world.contains(&format!("title \"{id}, seed 3")) && world.contains("controller \"<extern>\"")
+        );
+        assert_eq!(files, export(id, &ParamMap::new(), 3).unwrap());
+        assert_ne!(files, export(id, &ParamMap::new(), 4).unwrap(), "{id}");
+        assert_eq!(world.matches("ImageTexture").count(), files.textures.len(), "{id}");
     }
     assert_eq!(export("Walker-v1", &ParamMap::new(), 0).unwrap_err().kind(), ErrorKind::NotFound);
 }
 
 #[test]
 fn parameters_and_variants_change_the_world() {
-    let with =
-        |id: &str, name: &str, value: ParamValue| export(id, &ParamMap::from([(name.to_owned(), value)]), 1);
+    let with = |id: &str, name: &str, value: ParamValue| {
+        export(id, &ParamMap::from([(name.to_owned(), value)]), 1).map(|files| files.world)
+    };
     assert!(with("Pendulum-v1", "g", ParamValue::Float(3.5)).unwrap().contains("gravity 3.5\n"));
     let solids = |world: &str| world.matches("boundingObject").count();
-    let dense = export("UavDepthCorridor-dense-v1", &ParamMap::new(), 1).unwrap();
+    let dense = export("UavDepthCorridor-dense-v1", &ParamMap::new(), 1).unwrap().world;
     assert!((9..=13).contains(&solids(&dense)), "{}", solids(&dense));
     let few = with("UavDepthCorridor-v1", "max_obstacles", ParamValue::Int(2)).unwrap();
     // Two obstacles, the ground, and two walls or none.
@@ -66,7 +61,7 @@ fn the_initial_state_is_that_of_the_episode() {
     let mut cart = opendr_simulation::make("CartPole-v1").unwrap();
     let mut state = [0.0; 4];
     cart.reset(Some(9), &ParamMap::new(), &mut state).unwrap();
-    let world = export("CartPole-v1", &ParamMap::new(), 9).unwrap();
+    let world = export("CartPole-v1", &ParamMap::new(), 9).unwrap().world;
     assert!(world.contains(&format!("position {}\n", f64::from(state[0]))));
     assert!(world.contains(&format!("rotation 0 1 0 {}\n", f64::from(state[2]))));
 }
@@ -78,7 +73,7 @@ fn motors_of_a_gantry_are_the_actions() {
         ("PlanarPeg-v1", &["x", "y", "turn", "right finger", "left finger"]),
         ("PlanarGrasp-v1", &["x", "y", "lift", "turn", "right finger", "left finger"]),
     ] {
-        let world = export(id, &ParamMap::new(), 2).unwrap();
+        let world = export(id, &ParamMap::new(), 2).unwrap().world;
         assert_eq!(world.matches("Motor {").count(), motors.len(), "{id}");
         for motor in motors {
             assert!(world.contains(&format!("name \"{motor}\"\n")), "{id}: {motor}");
@@ -91,7 +86,7 @@ fn the_pusher_is_where_the_episode_begins() {
     let mut push = opendr_simulation::make("PlanarPush-v1").unwrap();
     let mut seen = [0.0; 6];
     push.reset(Some(4), &ParamMap::new(), &mut seen).unwrap();
-    let world = export("PlanarPush-v1", &ParamMap::new(), 4).unwrap();
+    let world = export("PlanarPush-v1", &ParamMap::new(), 4).unwrap().world;
     let starts: Vec<f64> = world
         .lines()
         .filter_map(|line| line.trim().strip_prefix("position "))
@@ -106,10 +101,27 @@ fn the_pusher_is_where_the_episode_begins() {
 #[test]
 fn arms_have_the_joints_of_the_urdf() {
     for id in ["MobileManipReach-v1", "MobileManipDoor-diff-v1"] {
-        let world = export(id, &ParamMap::new(), 6).unwrap();
+        let world = export(id, &ParamMap::new(), 6).unwrap().world;
         assert_eq!(world.matches("RotationalMotor {").count(), 7, "{id}");
         assert!(world.contains("name \"elbow_flex\"") && world.contains("minPosition -2.2"));
         let goals = world.matches("DEF GOAL_").count();
         assert_eq!(goals, if id.contains("Door") { 3 } else { 1 });
     }
+}
+
+#[test]
+fn textures_are_saved_beside_the_world() {
+    let folder = std::env::temp_dir().join(format!("opendr-webots-export-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let files = export("SphereView-Object-v1", &ParamMap::new(), 2).unwrap();
+    assert!(!files.textures.is_empty());
+    let written = files.save(folder.join("object.wbt")).unwrap();
+    assert_eq!(written.len(), files.textures.len() + 1);
+    for (url, image) in &files.textures {
+        assert!(files.world.contains(&format!("url [ \"{url}\" ]")));
+        assert_eq!(&opendr_vision::open(folder.join(url)).unwrap(), image);
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+    let error = files.save("/proc/no/object.wbt").unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Io, "{error}");
 }

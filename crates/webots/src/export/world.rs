@@ -1,17 +1,25 @@
 //! A world file and the nodes that several worlds have.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
+use opendr_engine::data::Image;
+
+use super::WorldFiles;
 use super::episode::Episode;
 use super::node::Node;
 
 /// First line: the version whose worlds have these nodes; later versions read them too.
 const HEADER: &str = "#VRML_SIM R2023b utf8";
 
+/// The rotation by no angle.
+pub(super) const UPRIGHT: [f64; 4] = [0.0, 0.0, 1.0, 0.0];
+
 /// A world.
 #[derive(Debug)]
 pub(super) struct World {
     nodes: Vec<Node>,
+    textures: BTreeMap<String, Image>,
 }
 
 /// Time step and gravity of a world.
@@ -33,7 +41,7 @@ impl World {
         let sky = Node::new("Background").words("skyColor", "[ 0.8 0.87 0.95 ]");
         let sun =
             Node::new("DirectionalLight").numbers("direction", &[0.3, 0.4, -1.0]).number("intensity", 2.5);
-        Self { nodes: vec![info, view, sky, sun] }
+        Self { nodes: vec![info, view, sky, sun], textures: BTreeMap::new() }
     }
 
     /// Sets the coefficient of friction of all contacts.
@@ -48,6 +56,18 @@ impl World {
     pub fn with(mut self, node: Node) -> Self {
         self.nodes.push(node);
         self
+    }
+
+    /// Adds an image whose address in the world is `url`.
+    #[must_use]
+    pub fn with_texture(mut self, url: String, image: Image) -> Self {
+        self.textures.insert(url, image);
+        self
+    }
+
+    /// Returns the files of the world.
+    pub fn into_files(self) -> WorldFiles {
+        WorldFiles { world: self.to_string(), textures: self.textures }
     }
 }
 

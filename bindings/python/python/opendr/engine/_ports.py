@@ -30,6 +30,7 @@ _NAMES: dict[type, str] = {
     target.PoseList: "poses",
     target.Category: "category",
     target.Heatmap: "heatmap",
+    target.Odometry: "odometry",
     target.TextRegionList: "texts",
     target.SpeechCommand: "command",
     target.BaseTranscription: "transcription",

@@ -12,6 +12,7 @@ from opendr.engine.target.category import Category
 from opendr.engine.target.coco_bounding_box import CocoBoundingBox
 from opendr.engine.target.heatmap import Heatmap
 from opendr.engine.target.keypoint import Keypoint
+from opendr.engine.target.odometry import Odometry
 from opendr.engine.target.pose import Pose, PoseList
 from opendr.engine.target.rl_target import RlTarget
 from opendr.engine.target.speech_command import SpeechCommand
@@ -33,6 +34,7 @@ __all__ = [
     "CocoBoundingBox",
     "Heatmap",
     "Keypoint",
+    "Odometry",
     "Pose",
     "PoseList",
     "RlTarget",
