@@ -61,13 +61,14 @@ pub fn param_flag(heading: &str, field: &'static Field) -> Arg {
 }
 
 fn port_flag(port: &'static Port) -> Arg {
+    let name = port.value_type.name();
+    let forms = match port.value_type.is_target() {
+        true => format!("a {name} as JSON, or lines of \"opendr infer --json\""),
+        false => format!("file of type {name}, or a folder with one for each frame"),
+    };
     Arg::new(port.name)
         .long(dashed(port.name))
-        .help(format!(
-            "{} [a {} as JSON, or lines of \"opendr infer --json\"]",
-            port.doc,
-            port.value_type.name()
-        ))
+        .help(format!("{} [{forms}]", port.doc))
         .help_heading("Further inputs")
         .required(!port.optional || port.init)
         .value_parser(value_parser!(PathBuf))

@@ -39,6 +39,7 @@ typedef struct opendr_tracking_annotation_3d_list opendr_tracking_annotation_3d_
 typedef struct opendr_pose_list opendr_pose_list;
 typedef struct opendr_category opendr_category;
 typedef struct opendr_heatmap opendr_heatmap;
+typedef struct opendr_odometry opendr_odometry;
 typedef struct opendr_text_region_list opendr_text_region_list;
 typedef struct opendr_speech_command opendr_speech_command;
 typedef struct opendr_base_transcription opendr_base_transcription;
@@ -368,6 +369,18 @@ typedef struct opendr_heatmap_fields {
     // Number of axes, 1 to 8.
     size_t axes;
 } opendr_heatmap_fields;
+
+// The fields of an odometry.
+typedef struct opendr_odometry_fields {
+    // Whether the pose is known; position and orientation are NaN if it is not.
+    bool is_known;
+    // Position in the frame of the first image, metres: x to the right, y down, z ahead.
+    double position[3];
+    // Orientation as a quaternion x, y, z, w.
+    double orientation[4];
+    // Number of landmarks that agree with the pose.
+    uint32_t num_landmarks;
+} opendr_odometry_fields;
 
 // A keypoint in an image, pixels; (-1, -1) means not detected.
 typedef struct opendr_keypoint {
@@ -826,6 +839,12 @@ enum opendr_status opendr_heatmap_create(const struct opendr_heatmap_fields *fie
 // Writes pointers to the elements of a heatmap, valid as long as the heatmap.
 enum opendr_status opendr_heatmap_read(const opendr_heatmap *heatmap, struct opendr_heatmap_fields *fields);
 
+// Creates an odometry; the fields are copied.
+enum opendr_status opendr_odometry_create(const struct opendr_odometry_fields *fields, opendr_odometry **odometry);
+
+// Writes the fields of an odometry.
+enum opendr_status opendr_odometry_read(const opendr_odometry *odometry, struct opendr_odometry_fields *fields);
+
 // Creates a list of items, which are copied.
 enum opendr_status opendr_pose_list_create(const struct opendr_pose *items, size_t count, opendr_pose_list **list);
 
@@ -1059,6 +1078,7 @@ OPENDR_VALUE_FUNCTIONS(opendr_tracking_annotation_3d_list)
 OPENDR_VALUE_FUNCTIONS(opendr_pose_list)
 OPENDR_VALUE_FUNCTIONS(opendr_category)
 OPENDR_VALUE_FUNCTIONS(opendr_heatmap)
+OPENDR_VALUE_FUNCTIONS(opendr_odometry)
 OPENDR_VALUE_FUNCTIONS(opendr_text_region_list)
 OPENDR_VALUE_FUNCTIONS(opendr_speech_command)
 OPENDR_VALUE_FUNCTIONS(opendr_base_transcription)
@@ -1073,6 +1093,7 @@ OPENDR_TARGET_FUNCTIONS(opendr_tracking_annotation_3d_list, "TrackingAnnotation3
 OPENDR_TARGET_FUNCTIONS(opendr_pose_list, "PoseList")
 OPENDR_TARGET_FUNCTIONS(opendr_category, "Category")
 OPENDR_TARGET_FUNCTIONS(opendr_heatmap, "Heatmap")
+OPENDR_TARGET_FUNCTIONS(opendr_odometry, "Odometry")
 OPENDR_TARGET_FUNCTIONS(opendr_text_region_list, "TextRegionList")
 OPENDR_TARGET_FUNCTIONS(opendr_speech_command, "SpeechCommand")
 OPENDR_TARGET_FUNCTIONS(opendr_base_transcription, "BaseTranscription")
@@ -2998,6 +3019,63 @@ static inline opendr_status opendr_infer_semi_global_matching(const opendr_learn
     else opendr_value_free(&outputs_[1].value);
     if (obstacles != NULL) *obstacles = (opendr_bounding_box_3d_list *)outputs_[2].value;
     else opendr_value_free(&outputs_[2].value);
+    return status_;
+}
+
+/*
+ * VisualOdometryLearner: Estimates the motion of a camera (single, stereo, RGB-D) with loop closure.
+ *
+ * Parameters:
+ *   focal_length (a float 0..=1000000 px, default 0): Focal length of the camera. Required.
+ *   focal_length_y (a float 0..=1000000 px, default 0): Focal length in y; 0 for that in x.
+ *   principal_point_x (a float -1..=1000000 px, default -1): x of the principal point; -1 for the centre of the image.
+ *   principal_point_y (a float -1..=1000000 px, default -1): y of the principal point; -1 for the centre of the image.
+ *   baseline (a float 0..=1000 m, default 0): Distance between the cameras of a stereo pair; required with `right`. That of the emitter of a depth camera; 0 for 0.075.
+ *   loop_interval (an int 0..=1000000, default 10): Number of key frames after which places are recognised and loops are closed, which moves the pose; 0 for never.
+ *   cell (an int 12..=256 px, default 32): Side of the cells that the image is divided into; one corner is followed in each.
+ *   max_corners (an int 30..=2000, default 250): Largest number of corners that are followed.
+ *   threshold (a float 0.2..=20 px, default 1.5): Largest reprojection error of an inlier.
+ *   min_inliers (an int 6..=1000, default 15): Smallest number of inliers; with fewer, tracking is lost.
+ *   window (an int 3..=8, default 6): Number of key frames that are refined together.
+ *   key_frame_motion (a float 1..=500 px, default 22): Median motion of the corners since the last key frame that makes a frame a key frame.
+ *   max_disparity (an int 8..=1024 px, default 128): Largest disparity of a stereo pair.
+ *   camera_height (a float 0..=100 m, default 0): Height of a single camera above the ground, from which the scale follows; 0 if unknown. The camera must look level.
+ *   loop_gap (an int 5..=100000, default 30): Number of key frames between two views of a place that close a loop.
+ *   loop_inliers (an int 10..=1000, default 25): Smallest number of inliers of a recognised place.
+ *   tracking_threads (an int 1..=8, default 1): Number of threads that follow corners; it changes no result.
+ *
+ * Inputs:
+ *   image (Image): Image of the camera, without distortion; the left one of a rectified stereo pair.
+ *   right (Image): Image of the right camera of the pair. Optional: may be NULL.
+ *   depth (Image): Depth of each pixel along the optical axis: `f32` in metres or `u16` in millimetres; 0 where it is unknown. Optional: may be NULL.
+ *
+ * Outputs:
+ *   odometry (Odometry)
+ */
+static inline opendr_status opendr_load_visual_odometry(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("visual_odometry", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_visual_odometry(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_image *right,
+    const opendr_image *depth,
+    opendr_odometry **odometry) {
+    opendr_input inputs_[3];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "right";
+    inputs_[1].value = (const opendr_value *)right;
+    inputs_[2].name = "depth";
+    inputs_[2].value = (const opendr_value *)depth;
+    outputs_[0].name = "odometry";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 3, outputs_, 1);
+    if (odometry != NULL) *odometry = (opendr_odometry *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
     return status_;
 }
 

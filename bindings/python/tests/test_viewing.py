@@ -55,7 +55,7 @@ def same(one, other):
 
 
 DRAWN = ("BoundingBox", "CocoBoundingBox", "BoundingBoxList", "TrackingAnnotation", "TrackingAnnotationList", "Pose")
-DRAWN += ("PoseList", "Category", "Heatmap", "TextRegion", "TextRegionList")
+DRAWN += ("PoseList", "Category", "Heatmap", "Odometry", "TextRegion", "TextRegionList")
 
 
 @pytest.mark.parametrize("target", every_target(), ids=lambda target: type(target).__name__)

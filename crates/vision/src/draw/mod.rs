@@ -12,6 +12,7 @@ mod heatmap;
 mod label;
 mod landmarks;
 mod mask;
+mod odometry;
 mod palette;
 mod polygons;
 mod poses;
@@ -30,6 +31,7 @@ pub use category::draw_category;
 pub use contact_sheet::contact_sheet;
 pub use heatmap::draw_heatmap;
 pub use mask::draw_mask;
+pub use odometry::draw_odometry;
 pub use palette::{COLOURS, Colour, colour_of_index, colour_of_name};
 pub use poses::draw_poses;
 pub use score_mask::draw_score_mask;
@@ -50,6 +52,7 @@ pub fn draw<'a>(image: &mut Image, target: impl Into<ValueRef<'a>>, style: &Styl
         ValueRef::PoseList(poses) => draw_poses(image, poses, style),
         ValueRef::Category(category) => draw_category(image, category, style),
         ValueRef::Heatmap(map) => draw_heatmap(image, map, style),
+        ValueRef::Odometry(odometry) => draw_odometry(image, odometry, style),
         ValueRef::TextRegionList(regions) => draw_text_regions(image, regions, style),
         _ => {}
     }

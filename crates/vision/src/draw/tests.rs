@@ -1,8 +1,8 @@
 use super::*;
 use opendr_engine::data::PixelFormat;
 use opendr_engine::target::{
-    BoundingBox, BoundingBoxList, Category, Heatmap, Keypoint, Pose, PoseList, Rle, Segmentation, Skeleton,
-    TextRegion, TextRegionList, TrackingAnnotation, TrackingAnnotationList,
+    BoundingBox, BoundingBoxList, Category, Heatmap, Keypoint, Odometry, Pose, PoseList, RigidPose, Rle,
+    Segmentation, Skeleton, TextRegion, TextRegionList, TrackingAnnotation, TrackingAnnotationList,
 };
 
 fn grey(width: usize, height: usize) -> Image {
@@ -240,4 +240,19 @@ fn text_regions_are_outlined_and_labelled() {
     let lit = |image: &Image| (0..10_000).filter(|at| is_lit(image, at % 100, at / 100)).count();
     assert!(lit(&outlined) > 100 && lit(&labelled) > lit(&outlined));
     assert!(is_lit(&outlined, 40, 42) && !is_lit(&outlined, 39, 50));
+}
+
+#[test]
+fn odometry_is_written_into_the_corner() {
+    let draw_one = |odometry: Odometry| {
+        let mut image = grey(200, 100);
+        draw(&mut image, &odometry, &Style::default());
+        image
+    };
+    let [known, unknown] = [Odometry::new(RigidPose::default(), 90), Odometry::default()].map(draw_one);
+    assert_ne!(known, unknown);
+    for image in [known, unknown] {
+        assert_ne!(pixel(&image, 4, 6), [90; 3]);
+        assert_eq!(pixel(&image, 150, 80), [90; 3]);
+    }
 }

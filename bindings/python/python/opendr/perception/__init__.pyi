@@ -30,4 +30,5 @@ from opendr.perception import speech_recognition as speech_recognition
 from opendr.perception import speech_transcription as speech_transcription
 from opendr.perception import stereo_matching as stereo_matching
 from opendr.perception import text_recognition as text_recognition
+from opendr.perception import visual_odometry as visual_odometry
 from opendr.perception import voice_activity_detection as voice_activity_detection

@@ -6,7 +6,7 @@ from opendr._upstream.rows import Absent, Home
 
 MODULES: dict[str, dict[str, Home]] = {
     "continual_slam_learner": {
-        "ContinualSLAMLearner": Absent("use SemiGlobalMatchingLearner of stereo_matching for depth")
+        "ContinualSLAMLearner": Absent("use VisualOdometryLearner of visual_odometry for the trajectory")
     },
     "datasets": {"KittiDataset": Absent('use ExternalDataset(path, "kitti_tracking")')},
     "datasets.kitti": {"KittiDataset": Absent('use ExternalDataset(path, "kitti_tracking")')},

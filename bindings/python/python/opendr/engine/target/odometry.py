@@ -66,6 +66,9 @@ class Odometry(Target):
         matrix[:3, 3] = self.position
         return matrix
 
+    def _is_drawn(self) -> bool:
+        return True
+
     def _table(self) -> Table:
         position = self.position or (None,) * 3
         orientation = self.orientation or (None,) * 4
