@@ -33,7 +33,7 @@ INPUTS = {
     "SkeletonSequence": ["wave:32x15x2:0.05", "wave:32x15x2:0.7"],
 }
 #: Fields of scores in predictions, of which at least one case must have some.
-SURE = ("confidence", "no_speech_prob", "labels")
+SURE = ("confidence", "no_speech_prob", "labels", "num_landmarks")
 #: Learners without pretrained models.
 PRETRAINED = {name for name in opendr.learners() if name == "counter" or _opendr.models(name)}
 

@@ -52,7 +52,9 @@ def test_worlds_are_exported_for_webots(opendr, tmp_path):
     text = world.read_text()
     assert text.startswith("#VRML_SIM R2023b utf8") and 'title "CartPole-v1, seed 3' in text
     done = opendr.run("sim", "export", "SphereView-Face-v1", world)
-    assert done.returncode not in (0, 101) and "textures" in done.stderr
+    assert done.returncode == 0, done.stderr
+    assert 'url [ "textures/SphereView-Face-v1-seed-0-0.png" ]' in world.read_text()
+    assert (tmp_path / "textures" / "SphereView-Face-v1-seed-0-0.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_robot_in_webots_is_an_environment_beside_the_others(opendr):

@@ -7,7 +7,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Odometry, RigidPose};
 use opendr_engine::{Device, Error, Result, Task};
 
-use crate::geometry::PinholeCamera;
+use crate::geometry::{PinholeCamera, is_image_size};
 use crate::odometry::{CameraFrame, CameraKind, OdometryParams, Tracking, VisualOdometry};
 
 /// Baseline of the emitter of a depth camera, m (Intel RealSense D400, Microsoft Kinect).
@@ -81,6 +81,11 @@ impl VisualOdometryLearner {
             _ => params.baseline,
         };
         let size = [frame.image().width(), frame.image().height()];
+        if !is_image_size(size) {
+            return Err(Error::invalid_input(format!(
+                "an image of {size:?} pixels; visual odometry takes images of 64x64 to 2^24 pixels"
+            )));
+        }
         let vertical = if params.focal_length_y > 0.0 { params.focal_length_y } else { params.focal_length };
         let centre = [(params.principal_point_x, size[0]), (params.principal_point_y, size[1])]
             .map(|(given, side)| if given >= 0.0 { given } else { (side as f64 - 1.0) / 2.0 });

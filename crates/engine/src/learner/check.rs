@@ -110,9 +110,10 @@ impl Check<'_> {
         for port in self.entry.ports {
             let (boxes, poses) = (Value::from(BoundingBoxList::default()), Value::from(PoseList::default()));
             let wrong = if port.value_type == ValueType::BoundingBoxList { poses } else { boxes };
-            let ports = first.iter().fold(Ports::default(), |ports, (name, value)| {
-                ports.with(name, if *name == port.name { wrong.as_value_ref() } else { value.as_value_ref() })
-            });
+            let others = first.iter().filter(|(name, _)| *name != port.name);
+            let ports =
+                others.fold(Ports::default(), |ports, (name, value)| ports.with(name, value.as_value_ref()));
+            let ports = ports.with(port.name, wrong.as_value_ref());
             rejected(learner.infer(&ports), ErrorKind::InvalidInput, "a port of another type")?;
         }
         for field in self.entry.params {

@@ -19,17 +19,20 @@ pub struct PinholeCamera {
     pub baseline: f64,
 }
 
+/// Returns whether images of this size can be tracked: of 64x64 to 2^24 pixels.
+pub(crate) fn is_image_size([width, height]: [usize; 2]) -> bool {
+    width >= 64 && height >= 64 && width.saturating_mul(height) <= 1 << 24
+}
+
 impl PinholeCamera {
     /// Checks the numbers.
     ///
     /// # Errors
     /// `InvalidParam` for images smaller than 64x64 or larger than 2^24 pixels, and for numbers that are not positive and finite.
     pub fn check(&self) -> Result<()> {
-        let [width, height] = self.size;
-        let is_sized = width >= 64 && height >= 64 && width.saturating_mul(height) <= 1 << 24;
         let is_positive = |value: f64| value > 0.0 && value < 1e6;
         let centre = self.principal_point;
-        if !is_sized
+        if !is_image_size(self.size)
             || !self.focal_length.into_iter().all(is_positive)
             || !centre.iter().all(|part| part.abs() < 1e6)
             || !is_positive(self.baseline)

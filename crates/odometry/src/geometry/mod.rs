@@ -17,6 +17,7 @@ pub use camera::PinholeCamera;
 pub use pose::{Pose, Rotation};
 pub use similarity::Similarity3;
 
+pub(crate) use camera::is_image_size;
 pub(crate) use cholesky::solve_in_place;
 pub(crate) use essential::{TwoViews, relative_pose};
 pub(crate) use pose::exponential;

@@ -74,6 +74,8 @@ fn unknown_poses_and_errors() {
     let both =
         VisualOdometryInputs { right: Some(&frame.right), depth: Some(&frame.depth), ..single(&frame.left) };
     assert_eq!(mono.infer(both).unwrap_err().kind(), ErrorKind::InvalidInput);
+    let small = opendr_engine::data::Image::from_rgb8(vec![0; 3 * 40 * 400], 40, 400).unwrap();
+    assert_eq!(stream(&drive).infer(single(&small)).unwrap_err().kind(), ErrorKind::InvalidInput);
     // A single camera does not know the depths of its first frames.
     let next = drive.render(1).unwrap();
     let target = mono.infer(single(&next.left)).unwrap();

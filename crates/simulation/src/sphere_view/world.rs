@@ -90,7 +90,8 @@ impl SphereWorld {
         &self.asset
     }
 
-    /// Returns the panels of the enclosure and the pole, if there is one, in the subject's frame; their colour is [`OCCLUDER`].
+    /// Returns the panels of the enclosure and the pole, if there is one, in the subject's frame; their
+    /// colour is [`OCCLUDER`](super::OCCLUDER).
     pub fn occluders(&self) -> &[Body] {
         &self.scene.bodies()[self.asset.bodies().count()..]
     }

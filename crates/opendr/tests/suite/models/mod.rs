@@ -3,11 +3,12 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 #![allow(dead_code, reason = "each program uses some")]
 
-use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
 
+use opendr::params::{ParamMap, ParamValue};
 use opendr::zoo::{Zoo, ZooOptions};
-use opendr::{ErrorKind, Silent};
+use opendr::{Device, ErrorKind, Silent};
 
 pub struct Models {
     shared: PathBuf,
@@ -40,6 +41,7 @@ impl Models {
             return None;
         }
         match self.zoo.get(spec, &Silent) {
+            Ok(path) if spec == "visual_odometry" => Some(calibrated(spec, &path)),
             Ok(path) => Some(path),
             Err(error) if error.kind() == ErrorKind::Network => {
                 println!("skipped: no network for {spec}: {error}");
@@ -48,4 +50,17 @@ impl Models {
             Err(error) => panic!("{spec}: {error}"),
         }
     }
+}
+
+/// Returns a container with the calibration of a camera, without which visual odometry refuses images.
+fn calibrated(name: &str, path: &Path) -> PathBuf {
+    let calibration = [("focal_length", 160.0), ("baseline", 0.4)];
+    let params = calibration.map(|(name, value)| (name.to_owned(), ParamValue::Float(value)));
+    let mut learner =
+        opendr::registry().find(name).unwrap().make(&ParamMap::from(params), Device::Cpu).unwrap();
+    learner.load(path).unwrap();
+    let folder = env::temp_dir().join(format!("opendr-calibrated-{}-{name}", std::process::id()));
+    fs::remove_dir_all(&folder).ok();
+    learner.save(&folder).unwrap();
+    folder
 }

@@ -45,6 +45,10 @@ class Odometry(Target):
         """x, y and z in metres; None when the pose is unknown."""
         return self.position
 
+    @data.setter
+    def data(self, data: Optional[Sequence[Real]]) -> None:
+        self.position = None if data is None else reals(data, 3, "data")
+
     @property
     def matrix(self) -> NDArray[Any]:
         """The pose as a ``[4, 4]`` matrix, ``world_from_camera``, float64.
