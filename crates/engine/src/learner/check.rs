@@ -159,7 +159,8 @@ impl Check<'_> {
         other.infer(&self.ports(0))?;
         for (call, prediction) in predictions.iter().enumerate() {
             must(&one.infer(&self.ports(call))? == prediction, "two streams are independent")?;
-            other.infer(&self.ports(predictions.len() - 1 - call))?;
+            // A learner whose frames are in the order of their stamps may refuse them backwards.
+            let _ = other.infer(&self.ports(predictions.len() - 1 - call));
         }
         let (mut one, mut other) = (learner.stream()?, learner.stream()?);
         let (first, second) = std::thread::scope(|scope| {
