@@ -139,12 +139,12 @@ impl Learner for VisualOdometryLearner {
             None => state.insert(self.begin(&frame)?),
         };
         (target.pose, target.num_landmarks) = match odometry.track(&frame)? {
-            Tracking::Tracked { mut pose, inliers, is_key_frame, .. } => {
+            Tracking::Tracked { inliers, is_key_frame, .. } => {
                 let interval = self.params.loop_interval;
                 if is_key_frame && interval > 0 && odometry.key_frames().is_multiple_of(interval) {
                     odometry.close_loops()?;
-                    pose = odometry.pose();
                 }
+                let pose = odometry.pose();
                 let pose = RigidPose { position: pose.position, orientation: pose.quaternion() };
                 (Some(pose), u32::try_from(inliers).unwrap_or(u32::MAX))
             }

@@ -48,10 +48,14 @@ impl FromToMessage<nav_msgs::Odometry> for Odometry {
             }
             None => {
                 pose.pose.orientation = geometry_msgs::Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 0.0 };
-                pose.covariance.iter_mut().step_by(7).for_each(|variance| *variance = UNKNOWN);
+                set_unknown(&mut pose.covariance);
             }
         }
-        message.twist.covariance.iter_mut().step_by(7).for_each(|variance| *variance = UNKNOWN);
+        set_unknown(&mut message.twist.covariance);
         Ok(message)
     }
+}
+
+fn set_unknown(covariance: &mut [f64; 36]) {
+    covariance.iter_mut().step_by(7).for_each(|variance| *variance = UNKNOWN);
 }

@@ -1,7 +1,10 @@
 //! Labels: text on a background of its class's colour, placed to hide little.
 
+use opendr_engine::data::Image;
+
 use crate::draw::canvas::{Canvas, Corners, Point};
-use crate::draw::palette::{Colour, ink_on};
+use crate::draw::palette::{Colour, colour_of_index, ink_on};
+use crate::draw::style::Style;
 use crate::draw::text::Text;
 
 /// Maximum number of labels that a new label avoids; older ones are ignored.
@@ -22,6 +25,15 @@ pub(super) fn draw_chip(
     canvas.fill_rounded([left, top, left + width, top + height], text.unit(), colour, 0.9);
     text.draw(canvas, [left + padding, top + padding], ink_on(colour));
     [width, height]
+}
+
+/// Writes `text` into the left-top corner of `image`, in the colour of the style or of `index`. The image is converted to RGB `u8`
+/// where needed.
+pub(super) fn draw_in_corner(image: &mut Image, text: &str, index: i64, style: &Style) {
+    let mut canvas = Canvas::over(image);
+    let unit = style.letter_unit(&canvas);
+    let colour = style.colour.unwrap_or_else(|| colour_of_index(index));
+    draw_chip(&mut canvas, &Text::new(text, unit), [unit; 2], colour);
 }
 
 /// Returns the size of the background, with space for descenders.

@@ -40,8 +40,8 @@ fn textured(mesh: &TexturedMesh, url: &str) -> Node {
         .number("roughness", 1.0)
         .number("metalness", 0.0);
     let numbers = |rows: &[f32]| rows.iter().copied().map(f64::from).collect::<Vec<_>>();
-    let faces: Vec<_> = mesh.faces.iter().flat_map(|[a, b, c]| [*a, *b, *c].map(f64::from)).collect();
-    let faces: Vec<_> = faces.chunks(3).flat_map(|face| face.iter().copied().chain([-1.0])).collect();
+    let face = |[a, b, c]: &[u32; 3]| [f64::from(*a), f64::from(*b), f64::from(*c), -1.0];
+    let faces: Vec<_> = mesh.faces.iter().flat_map(face).collect();
     let points = Node::new("Coordinate").list("point", &numbers(mesh.vertices.as_flattened()), 3);
     let places = mesh.texture_coordinates.as_flattened();
     let geometry = Node::new("IndexedFaceSet")
