@@ -209,7 +209,7 @@ class Photos(DatasetIterator):
 
 def test_a_recogniser_is_trained_on_a_data_set(tmp_path):
     learner = ActivePoseRecognitionLearner()
-    few = {**SMALL, "view_episodes": 1, "epochs": 60}
+    few = {**SMALL, "epochs": 60}
     outcome = learner.fit(WORLD, dataset=Photos(200), limit=100, silent=True, out=tmp_path / "run", **few)
     assert outcome["report"]["samples"] == 100 and outcome["report"]["dataset"] == "Photos"
     assert json.loads((tmp_path / "run/report.json").read_text())["samples"] == 100

@@ -56,7 +56,7 @@ pub fn compare<S: ActiveScene>(
         ("policy", Box::new(TrainedPolicy::new(model.policy.clone())), model.stop),
         ("oracle", Box::new(OracleBaseline), model.stop),
     ];
-    let mut view_loop = ViewLoop::new(scene, model.fusion, model.stop.moves)?;
+    let mut view_loop = ViewLoop::new(scene, model.fusion, model.stop.moves, model.best_view.clone())?;
     let mut rows = Vec::new();
     for (camera_policy, mut policy, stop) in policies {
         let mut results = Vec::new();

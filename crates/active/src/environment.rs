@@ -4,6 +4,7 @@ use opendr_engine::environment::{Environment, EnvironmentSpec, Info, ResetOption
 use opendr_engine::target::Action;
 use opendr_engine::{Error, Random, Result};
 
+use crate::best_view::BestViewEstimator;
 use crate::fusion::Fusion;
 use crate::observation::Observer;
 use crate::scene::ActiveScene;
@@ -26,16 +27,22 @@ pub struct ActiveEnvironment<S> {
 }
 
 impl<S: ActiveScene> ActiveEnvironment<S> {
-    /// Creates an environment over a scene.
+    /// Creates an environment over a scene; `estimator` is that of the best view.
     ///
     /// # Errors
     /// Returns `InvalidParam` for a scene of fewer than two classes.
-    pub fn new(mut scene: S, fusion: Fusion, stop: StopRule) -> Result<Self> {
+    pub fn new(
+        mut scene: S,
+        fusion: Fusion,
+        stop: StopRule,
+        estimator: Option<BestViewEstimator>,
+    ) -> Result<Self> {
         let action = Space::symmetric(&vec![1.0; scene.rig().axes().len()]);
         let observation = Space::symmetric(&[f32::INFINITY; Observer::LEN]);
         let spec = EnvironmentSpec::new("ActivePerception-v1", observation, action)
             .with_reward_range(-1.0 - f64::from(EFFORT + MOTION), 1.0);
-        Ok(Self { spec, view_loop: ViewLoop::new(scene, fusion, stop.moves)?, stop, stream: None, moves: 0 })
+        let view_loop = ViewLoop::new(scene, fusion, stop.moves, estimator)?;
+        Ok(Self { spec, view_loop, stop, stream: None, moves: 0 })
     }
 }
 

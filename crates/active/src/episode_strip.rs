@@ -35,7 +35,7 @@ pub fn episode_strip<S: ActiveScene>(
     let columns = model.stop.moves + 1;
     let [width, height] = [columns * (VIEW + EDGE) + EDGE, rows * (VIEW + BAR + EDGE) + EDGE];
     let mut strip = vec![245; 3 * width * height];
-    let mut view_loop = ViewLoop::new(scene, model.fusion, model.stop.moves)?;
+    let mut view_loop = ViewLoop::new(scene, model.fusion, model.stop.moves, model.best_view.clone())?;
     let mut policy = TrainedPolicy::new(model.policy.clone());
     let axes = view_loop.scene().rig().axes().to_vec();
     let (mut observation, mut action) = (vec![0.0; Observer::LEN], vec![0.0; axes.len()]);

@@ -26,6 +26,7 @@
 
 mod active;
 mod any_recogniser;
+mod best_view;
 mod calibration;
 mod camera_policy;
 mod comparison;
@@ -50,11 +51,13 @@ mod stop;
 mod training;
 mod view_classifier;
 mod view_loop;
+mod view_network;
 
 pub mod rig;
 
 pub use active::{Active, Outcome, View};
 pub use any_recogniser::{AnyRecogniser, write_evidence};
+pub use best_view::{BestView, BestViewBelief, BestViewEstimate, BestViewEstimator, fit_best_view};
 pub use calibration::{Trajectory, fit_fusion, negative_log_likelihood};
 pub use camera_policy::{
     CameraContext, CameraPolicy, GreedyPolicy, OracleBaseline, OrbitBaseline, RandomBaseline, StaticBaseline,
@@ -82,7 +85,6 @@ pub use scene::ActiveScene;
 pub use session::{ActiveSession, Decision};
 pub use stop::{StopReason, StopRule};
 pub use training::{ActiveTraining, calibrated, train_active};
-pub use view_classifier::{
-    LabelledViews, ViewClassifier, ViewClassifierConfig, ViewTraining, fit_view_classifier,
-};
+pub use view_classifier::{ViewClassifier, ViewClassifierConfig, ViewTraining, fit_view_networks};
 pub use view_loop::ViewLoop;
+pub use view_network::{FreshViews, LabelledViews, ViewNetworkConfig, ViewSource};

@@ -3,6 +3,7 @@
 use opendr_engine::rig::ViewAxis;
 use opendr_rl::Policy;
 
+use crate::best_view::BestViewEstimator;
 use crate::fusion::Fusion;
 use crate::gain::GainNetwork;
 use crate::stop::StopRule;
@@ -12,6 +13,8 @@ use crate::stop::StopRule;
 pub struct ActiveModel {
     /// Chooses motions.
     pub policy: Policy,
+    /// Estimates the direction to the best view; `None` where the environment of the training does not report that direction.
+    pub best_view: Option<BestViewEstimator>,
     /// Fusion of views.
     pub fusion: Fusion,
     /// Predicts the gain of a motion.

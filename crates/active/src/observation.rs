@@ -5,16 +5,18 @@ use opendr_engine::rig::{Achieved, ViewAxis, ViewPose};
 use opendr_engine::target::ActionBase as _;
 use opendr_engine::{Error, Result};
 
+use crate::best_view::{BestViewBelief, BestViewEstimator, in_camera_frame};
 use crate::fusion::Belief;
 
 /// Width and height of the thumbnail in pixels.
 const SIDE: usize = 12;
 /// Length of an observation without the thumbnail.
-const NUMBERS: usize = 18;
+const NUMBERS: usize = 27;
 
 /// Turns views and beliefs into observations: luminance of 12 x 12 pixels with mean 0, then confidence and uncertainty of the
 /// belief, information of the last and of the best view, the pose, the direction to the best view, the last motion and whether a
-/// limit stopped it, and the used share of the budget.
+/// limit stopped it, the used share of the budget, and where an estimator is given the direction to the best view relative to the
+/// camera with its certainty.
 #[derive(Debug, Clone)]
 pub struct Observer {
     axes: Vec<ViewAxis>,
@@ -22,20 +24,25 @@ pub struct Observer {
     begin: ViewPose,
     thumbnail: [f32; SIDE * SIDE],
     last: Option<Achieved>,
+    estimator: Option<BestViewEstimator>,
+    best_view: BestViewBelief,
 }
 
 impl Observer {
     /// Length of an observation.
     pub const LEN: usize = SIDE * SIDE + NUMBERS;
 
-    /// Creates an observer of a rig with these axes and a maximum number of motions.
-    pub fn new(axes: &[ViewAxis], budget: usize) -> Self {
+    /// Creates an observer of a rig with these axes and a maximum number of motions. Without an estimator of the best view, its numbers
+    /// are 0.
+    pub fn new(axes: &[ViewAxis], budget: usize, estimator: Option<BestViewEstimator>) -> Self {
         Self {
             axes: axes.to_vec(),
             budget: budget.max(1),
             begin: ViewPose::default(),
             thumbnail: [0.0; SIDE * SIDE],
             last: None,
+            estimator,
+            best_view: BestViewBelief::default(),
         }
     }
 
@@ -43,6 +50,7 @@ impl Observer {
     pub fn reset(&mut self, pose: ViewPose) {
         self.begin = pose;
         self.last = None;
+        self.best_view.reset();
     }
 
     /// Sets the last motion.
@@ -50,11 +58,18 @@ impl Observer {
         self.last = Some(achieved);
     }
 
-    /// Sets the thumbnail from an image.
+    /// Adds the image of a view at a pose: sets the thumbnail, and updates the direction to the best view.
     ///
     /// # Errors
-    /// Returns `InvalidInput` for an image that is not of 8 bits.
-    pub fn set_image(&mut self, image: &Image) -> Result<()> {
+    /// Returns `InvalidInput` for an image that is not of 8 bits, `Internal` for an estimator whose outputs are not finite.
+    pub fn add(&mut self, image: &Image, pose: ViewPose) -> Result<()> {
+        if let Some(estimator) = &mut self.estimator {
+            self.best_view.add(pose, &estimator.estimate(image)?);
+        }
+        self.set_thumbnail(image)
+    }
+
+    fn set_thumbnail(&mut self, image: &Image) -> Result<()> {
         let (width, height) = (image.width(), image.height());
         let opendr_engine::data::Pixels::U8(pixels) = image.pixels() else {
             return Err(Error::invalid_input("a camera policy takes images of 8 bits; convert the image"));
@@ -108,6 +123,11 @@ impl Observer {
             stopped = if achieved.is_complete() { 0.0 } else { 1.0 };
         }
         let moves = belief.views().saturating_sub(1) as f32;
+        let to = self.best_view.best();
+        let level = ViewPose { elevation: 0.0, ..*pose };
+        let [[ahead, left, up], mean] = [to.direction, to.mean].map(|part| in_camera_frame(&level, part));
+        let rise = up.clamp(-1.0, 1.0).asin() - pose.elevation as f32;
+        let known = if self.estimator.is_some() { 1.0 } else { 0.0 };
         let all: [f32; NUMBERS] = [
             belief.best().1,
             belief.uncertainty(),
@@ -127,6 +147,15 @@ impl Observer {
             last[3],
             stopped,
             if belief.views() > 1 { 1.0 } else { 0.0 },
+            known * to.certainty,
+            known * ahead,
+            known * left,
+            known * up,
+            known * left.atan2(ahead),
+            known * rise,
+            mean[0],
+            mean[1],
+            mean[2],
         ];
         numbers.copy_from_slice(&all);
     }

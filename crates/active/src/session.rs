@@ -52,7 +52,7 @@ impl ActiveSession {
             gain: model.gain.clone(),
             compute: Compute::single(),
             belief: Belief::new(classes, model.fusion)?,
-            observer: Observer::new(&model.axes, model.stop.moves),
+            observer: Observer::new(&model.axes, model.stop.moves, model.best_view.clone()),
             axes: model.axes.clone(),
             observation: vec![0.0; Observer::LEN],
             deflections: vec![0.0; model.axes.len()],
@@ -86,7 +86,7 @@ impl ActiveSession {
         let Self { policy, gain, compute, belief, observer, axes, observation, deflections } = self;
         let motions = belief.views();
         belief.add(pose, evidence)?;
-        observer.set_image(image)?;
+        observer.add(image, pose)?;
         observer.observe(&pose, belief, observation);
         policy.choose(&CameraContext { observation, pose, axes, best: None }, deflections)?;
         let expected_gain = gain.predict(compute, observation, deflections)?.first().copied().unwrap_or(0.0);

@@ -8,6 +8,7 @@ use opendr_kernels::Compute;
 use opendr_rl::{Algorithm as _, NetworkConfig, Policy, Ppo, PpoConfig, Schedule};
 use opendr_simulation::vector::{Autoreset, EnvironmentVector};
 
+use crate::best_view::BestViewEstimator;
 use crate::calibration::{Trajectory, fit_fusion};
 use crate::camera_policy::{CameraPolicy, RandomBaseline, TrainedPolicy};
 use crate::environment::ActiveEnvironment;
@@ -47,13 +48,15 @@ impl Default for ActiveTraining {
 const CALIBRATION: u64 = 1 << 32;
 const LATER_CALIBRATION: u64 = 1 << 33;
 
-/// Trains on scenes that `make` creates, one for each environment. `observer` receives the number of motions and the mean
+/// Trains on scenes that `make` creates, one for each environment. `best_view` estimates the direction to the best view, which the
+/// policy then observes. `observer` receives the number of motions and the mean
 /// return; it returns whether to stop.
 ///
 /// # Errors
 /// Returns errors of the scenes; `InvalidParam` for settings out of range.
 pub fn train_active<S: ActiveScene + 'static>(
     make: &dyn Fn() -> Result<S>,
+    best_view: Option<BestViewEstimator>,
     training: &ActiveTraining,
     observer: &mut dyn FnMut(u64, f64) -> bool,
 ) -> Result<ActiveModel> {
@@ -64,7 +67,7 @@ pub fn train_active<S: ActiveScene + 'static>(
     let mut samples = GainSamples::default();
     let record = |fusion, camera_policy: &mut dyn CameraPolicy, first: u64, samples: &mut GainSamples| {
         trajectories(
-            (make, fusion, &everything),
+            (make, fusion, &everything, &best_view),
             camera_policy,
             [first, training.calibration_episodes],
             samples,
@@ -74,7 +77,7 @@ pub fn train_active<S: ActiveScene + 'static>(
     let random =
         record(Fusion::default(), &mut RandomBaseline::default(), first, &mut GainSamples::default())?;
     let fusion = fit_fusion(make()?.classes(), &random)?;
-    let policy = train_policy(make, training, fusion, &compute, observer)?;
+    let policy = train_policy((make, fusion, &training.stop, &best_view), training, &compute, observer)?;
     record(fusion, &mut RandomBaseline::default(), first, &mut samples)?;
     let mut camera_policy = TrainedPolicy::new(policy.clone());
     let own = record(fusion, &mut camera_policy, first + 5000, &mut samples)?;
@@ -82,7 +85,7 @@ pub fn train_active<S: ActiveScene + 'static>(
     let gain = GainNetwork::fit(&samples, axes.len(), 10, training.seed, &compute)?;
     // The policy's own views differ from random ones, so the belief is calibrated on them again.
     let fusion = fit_fusion(make()?.classes(), &own)?;
-    Ok(ActiveModel { policy, fusion, gain, stop: training.stop, axes })
+    Ok(ActiveModel { policy, best_view, fusion, gain, stop: training.stop, axes })
 }
 
 /// Returns the model with its belief calibrated for another recogniser or other subjects; the policy is the same.
@@ -96,22 +99,22 @@ pub fn calibrated<S: ActiveScene>(
 ) -> Result<ActiveModel> {
     let everything = StopRule { confidence: 1.0, ..model.stop };
     let mut camera_policy = TrainedPolicy::new(model.policy.clone());
-    let run = (make, model.fusion, &everything);
+    let run = (make, model.fusion, &everything, &model.best_view);
     let own =
         trajectories(run, &mut camera_policy, [LATER_CALIBRATION, episodes], &mut GainSamples::default())?;
     Ok(ActiveModel { fusion: fit_fusion(make()?.classes(), &own)?, ..model.clone() })
 }
 
-/// Scene, fusion and stop rule of episodes.
-type Run<'a, S> = (&'a dyn Fn() -> Result<S>, Fusion, &'a StopRule);
+/// Scene, fusion, stop rule and estimator of the best view of episodes.
+type Run<'a, S> = (&'a dyn Fn() -> Result<S>, Fusion, &'a StopRule, &'a Option<BestViewEstimator>);
 
 fn trajectories<S: ActiveScene>(
-    (make, fusion, stop): Run<'_, S>,
+    (make, fusion, stop, best_view): Run<'_, S>,
     camera_policy: &mut dyn CameraPolicy,
     [first, episodes]: [u64; 2],
     samples: &mut GainSamples,
 ) -> Result<Vec<Trajectory>> {
-    let mut view_loop = ViewLoop::new(make()?, fusion, stop.moves)?;
+    let mut view_loop = ViewLoop::new(make()?, fusion, stop.moves, best_view.clone())?;
     let seeds = first..first + episodes;
     seeds
         .map(|seed| {
@@ -121,14 +124,13 @@ fn trajectories<S: ActiveScene>(
 }
 
 fn train_policy<S: ActiveScene + 'static>(
-    make: &dyn Fn() -> Result<S>,
+    (make, fusion, stop, best_view): Run<'_, S>,
     training: &ActiveTraining,
-    fusion: Fusion,
     compute: &Compute,
     observer: &mut dyn FnMut(u64, f64) -> bool,
 ) -> Result<Policy> {
     let environment = || -> Result<Box<dyn Environment>> {
-        Ok(Box::new(ActiveEnvironment::new(make()?, fusion, training.stop)?))
+        Ok(Box::new(ActiveEnvironment::new(make()?, fusion, *stop, best_view.clone())?))
     };
     let environments = (0..training.environments).map(|_| environment()).collect::<Result<Vec<_>>>()?;
     let mut environments = EnvironmentVector::new(environments, Autoreset::SameStep, training.threads)?;

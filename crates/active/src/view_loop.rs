@@ -4,6 +4,7 @@ use opendr_engine::rig::{Achieved, ViewPose};
 use opendr_engine::target::Action;
 use opendr_engine::{Random, Result};
 
+use crate::best_view::BestViewEstimator;
 use crate::fusion::{Belief, Fusion};
 use crate::observation::Observer;
 use crate::scene::ActiveScene;
@@ -19,13 +20,18 @@ pub struct ViewLoop<S> {
 }
 
 impl<S: ActiveScene> ViewLoop<S> {
-    /// Creates the loop over a scene; `budget` is the maximum number of motions.
+    /// Creates the loop over a scene; `budget` is the maximum number of motions, `estimator` that of the best view.
     ///
     /// # Errors
     /// Returns `InvalidParam` for a scene of fewer than two classes.
-    pub fn new(mut scene: S, fusion: Fusion, budget: usize) -> Result<Self> {
+    pub fn new(
+        mut scene: S,
+        fusion: Fusion,
+        budget: usize,
+        estimator: Option<BestViewEstimator>,
+    ) -> Result<Self> {
         let classes = scene.classes();
-        let observer = Observer::new(scene.rig().axes(), budget);
+        let observer = Observer::new(scene.rig().axes(), budget, estimator);
         Ok(Self {
             belief: Belief::new(classes, fusion)?,
             observer,
@@ -62,9 +68,8 @@ impl<S: ActiveScene> ViewLoop<S> {
     /// # Errors
     /// Returns errors of the scene.
     fn capture(&mut self) -> Result<()> {
-        let image = self.scene.view(&mut self.evidence)?;
-        self.observer.set_image(image)?;
         let pose = self.scene.rig().pose();
+        self.observer.add(self.scene.view(&mut self.evidence)?, pose)?;
         self.belief.add(pose, &self.evidence)
     }
 

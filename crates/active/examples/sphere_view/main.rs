@@ -9,8 +9,8 @@ mod options;
 use std::time::Instant;
 
 use opendr_active::{
-    ActiveFitParams, ActiveTraining, Comparison, EnvironmentRig, EnvironmentScene, LabelledViews,
-    ViewClassifier, calibrated, compare, episode_strip, fit_view_classifier, train_active,
+    ActiveFitParams, ActiveTraining, BestViewEstimator, Comparison, EnvironmentRig, EnvironmentScene,
+    FreshViews, ViewClassifier, calibrated, compare, episode_strip, fit_view_networks, train_active,
 };
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::params::ParamMap;
@@ -36,20 +36,20 @@ fn main() -> Result<()> {
     };
     let [known, others] = [source(GALLERIES[0])?, source(GALLERIES[1])?];
     let params = ActiveFitParams { view_episodes: options.view_episodes, ..ActiveFitParams::default() };
-    let other = ActiveFitParams { kernels: 16, hidden: 64, seed: 9, ..params.clone() };
-    let recogniser = fit_recogniser(&known, &params)?;
+    let other = ActiveFitParams { kernels: 10, hidden: 64, seed: 9, ..params.clone() };
+    let (recogniser, best_view) = fit_networks(&known, &params)?;
     // Persons of another gallery are other classes, whose recogniser is trained on their views; instances of objects and poses
     // are recognised by the same recogniser.
     let enrolled = match options.subject {
-        opendr_simulation::sphere_view::Subject::Face => fit_recogniser(&others, &params)?,
+        opendr_simulation::sphere_view::Subject::Face => fit_networks(&others, &params)?.0,
         _ => recogniser.clone(),
     };
-    let swapped = fit_recogniser(&known, &other)?;
+    let swapped = fit_networks(&known, &other)?.0;
     for seed in 0..options.seeds {
         let training = ActiveTraining { timesteps: options.timesteps, seed, ..ActiveTraining::default() };
         let part = Instant::now();
         let scene = || EnvironmentScene::new(&known, recogniser.clone());
-        let model = train_active(&scene, &training, &mut |_, _| false)?;
+        let model = train_active(&scene, best_view.clone(), &training, &mut |_, _| false)?;
         eprintln!("seed {seed}: {:?} after {:.0} s", model.fusion, part.elapsed().as_secs_f64());
         let run = |name: &str, comparison: Comparison| println!("seed {seed}, {name}\n\n{comparison}");
         let evaluate =
@@ -68,22 +68,22 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn fit_recogniser(source: &dyn EnvironmentSource, params: &ActiveFitParams) -> Result<ViewClassifier> {
+fn fit_networks(
+    source: &dyn EnvironmentSource,
+    params: &ActiveFitParams,
+) -> Result<(ViewClassifier, Option<BestViewEstimator>)> {
     let begun = Instant::now();
     let rigs = (0..params.num_workers).map(|_| EnvironmentRig::new(source.make()?));
-    let mut rigs = rigs.collect::<Result<Vec<_>>>()?;
-    let views = LabelledViews::collect(&mut rigs, VIEW_SEEDS * (1 + params.seed), params.view_episodes)?;
-    let collected = begun.elapsed().as_secs_f64();
+    let rigs = rigs.collect::<Result<Vec<_>>>()?;
+    let mut views = FreshViews::new(rigs, VIEW_SEEDS * (1 + params.seed), params.view_episodes);
     let compute = Compute::with_threads(params.num_workers as usize);
-    let mut losses = Vec::new();
-    let recogniser = fit_view_classifier(&views, &params.view_training(), &compute, &mut |_, loss| {
-        losses.push(loss);
-        false
-    })?;
-    eprintln!(
-        "recogniser: {} views in {collected:.0} s, losses {losses:.2?} in {:.0} s",
-        views.len(),
-        begun.elapsed().as_secs_f64() - collected
-    );
-    Ok(recogniser)
+    let networks =
+        fit_view_networks(&mut views, &params.view_training(), &compute, &mut |epoch, loss, best_view| {
+            eprintln!(
+                "epoch {epoch}: loss {loss:.3}, of the best view {best_view:.3?}, {:.0} s",
+                begun.elapsed().as_secs_f64()
+            );
+            false
+        })?;
+    Ok(networks)
 }

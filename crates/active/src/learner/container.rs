@@ -12,14 +12,17 @@ use opendr_rl::{POLICY_FILE, Policy};
 use serde::{Deserialize, Serialize};
 
 use super::{ActiveKind, ActiveParams};
+use crate::best_view::BestViewEstimator;
 use crate::fusion::{Belief, Fusion};
 use crate::gain::GainNetwork;
 use crate::model::ActiveModel;
 use crate::observation::Observer;
 use crate::stop::StopRule;
 use crate::view_classifier::{ViewClassifier, ViewClassifierConfig};
+use crate::view_network::ViewNetworkConfig;
 
 const RECOGNISER_FILE: &str = "recogniser.bin";
+const BEST_VIEW_FILE: &str = "best_view.bin";
 const GAIN_FILE: &str = "gain.bin";
 
 /// Contents of `inputs` in the manifest.
@@ -31,6 +34,7 @@ struct Layout {
     fusion: Fusion,
     stop: StopRule,
     recogniser: ViewClassifierConfig,
+    best_view: Option<ViewNetworkConfig>,
 }
 
 /// A camera policy and the recogniser that it was trained with.
@@ -80,7 +84,18 @@ impl ActiveContainer {
         let gain = GainNetwork::from_bytes(axes, &model.file(GAIN_FILE)?)?;
         let recogniser = ViewClassifier::from_bytes(layout.recogniser, &model.file(RECOGNISER_FILE)?)
             .context(|| model.path().display().to_string())?;
-        let model = ActiveModel { policy, fusion: layout.fusion, gain, stop: layout.stop, axes: layout.axes };
+        let best_view = layout.best_view.map(|config| {
+            BestViewEstimator::from_bytes(config, &model.file(BEST_VIEW_FILE)?)
+                .context(|| model.path().display().to_string())
+        });
+        let model = ActiveModel {
+            policy,
+            best_view: best_view.transpose()?,
+            fusion: layout.fusion,
+            gain,
+            stop: layout.stop,
+            axes: layout.axes,
+        };
         Ok(Self { model, recogniser, environment: layout.environment })
     }
 }
@@ -105,11 +120,15 @@ pub fn write_active_model<K: ActiveKind>(
         fusion: model.fusion,
         stop: model.stop,
         recogniser: recogniser.config().clone(),
+        best_view: model.best_view.as_ref().map(|best_view| best_view.config().clone()),
     })?;
     manifest.lineage.source = format!("trained in {}", spec.id);
     let mut writer = ModelWriter::new(path, manifest)?;
     writer.add(POLICY_FILE, &model.policy.to_bytes()?)?;
     writer.add(RECOGNISER_FILE, &recogniser.to_bytes())?;
+    if let Some(best_view) = &model.best_view {
+        writer.add(BEST_VIEW_FILE, &best_view.to_bytes())?;
+    }
     writer.add(GAIN_FILE, &model.gain.to_bytes())?;
     writer.finish().map(drop)
 }

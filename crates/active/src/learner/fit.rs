@@ -9,12 +9,14 @@ use opendr_kernels::Compute;
 
 use super::container::{ActiveContainer, write_active_model};
 use super::{ActiveFitParams, ActiveKind, ActiveLearner, ActiveParams};
+use crate::best_view::{BestViewEstimator, fit_best_view};
 use crate::comparison::compare;
 use crate::environment_rig::EnvironmentRig;
 use crate::environment_scene::EnvironmentScene;
 use crate::model::ActiveModel;
 use crate::training::{calibrated, train_active};
-use crate::view_classifier::{LabelledViews, ViewClassifier, fit_view_classifier};
+use crate::view_classifier::{ViewClassifier, fit_view_networks};
+use crate::view_network::{FreshViews, LabelledViews, ViewSource};
 
 /// First seed of the episodes that report the result of a training; no calibration uses them.
 const VALIDATION: u64 = 1 << 34;
@@ -44,10 +46,10 @@ impl<K: ActiveKind> LearnerActive for ActiveLearner<K> {
             Error::invalid_param(format!("{what} = 0 keeps a part of the base model; load one first"))
         };
         let mut statistics = Statistics::default();
-        let recogniser = match (&base, dataset.is_none() && fit_params.view_episodes == 0) {
-            (Some(base), true) => base.recogniser.clone(),
+        let (recogniser, best_view) = match (&base, dataset.is_none() && fit_params.view_episodes == 0) {
+            (Some(base), true) => (base.recogniser.clone(), base.model.best_view.clone()),
             (None, true) => return Err(needs_base("view_episodes")),
-            (_, false) => fit_recogniser(fit_params, dataset, env, job, &mut statistics)?,
+            (_, false) => fit_networks(fit_params, dataset, env, job, &mut statistics)?,
         };
         if job.progress.stopped() {
             return Ok(statistics);
@@ -56,7 +58,7 @@ impl<K: ActiveKind> LearnerActive for ActiveLearner<K> {
         let model = match (&base, fit_params.total_timesteps) {
             (Some(base), 0) => calibrated(&base.model, &scene, fit_params.calibration_episodes)?,
             (None, 0) => return Err(needs_base("total_timesteps")),
-            _ => fit_policy(params, fit_params, &scene, job)?,
+            _ => fit_policy(params, fit_params, (&scene, best_view), job)?,
         };
         if job.progress.stopped() {
             return Ok(statistics);
@@ -77,47 +79,69 @@ impl<K: ActiveKind> LearnerActive for ActiveLearner<K> {
     }
 }
 
-/// Trains the recogniser on a data set, or on views of the environments.
-fn fit_recogniser(
+/// Trains the recogniser on a data set, or on views of the environments, and the estimator of the best view on the latter.
+fn fit_networks(
     params: &ActiveFitParams,
     dataset: Option<DatasetRef<'_>>,
     env: &dyn EnvironmentSource,
     job: &FitJob<'_>,
     statistics: &mut Statistics,
-) -> Result<ViewClassifier> {
+) -> Result<(ViewClassifier, Option<BestViewEstimator>)> {
     let rigs = (0..params.num_workers).map(|_| EnvironmentRig::new(env.make()?));
-    let mut rigs = rigs.collect::<Result<Vec<_>>>()?;
-    let views = match (dataset, rigs.first()) {
-        (Some(DatasetRef::Iterator(dataset)), Some(rig)) => {
-            LabelledViews::from_dataset(dataset, rig.side(), rig.classes())?
-        }
-        (Some(DatasetRef::External(_)), _) => {
+    let rigs = rigs.collect::<Result<Vec<_>>>()?;
+    let (side, classes) = rigs.first().map_or((0, 0), |rig| (rig.side(), rig.classes()));
+    let mut rendered = FreshViews::new(rigs, VIEW_SEEDS * (1 + params.seed), params.view_episodes);
+    let mut given = match dataset {
+        None => None,
+        Some(DatasetRef::Iterator(dataset)) => Some(LabelledViews::from_dataset(dataset, side, classes)?),
+        Some(DatasetRef::External(_)) => {
             return Err(Error::invalid_input("an unopened data set; open it by its format first"));
         }
-        _ => LabelledViews::collect(&mut rigs, VIEW_SEEDS * (1 + params.seed), params.view_episodes)?,
+    };
+    let source: &mut dyn ViewSource = match &mut given {
+        Some(views) => views,
+        None => &mut rendered,
     };
     let compute = Compute::with_threads(params.num_workers as usize);
+    let training = params.view_training();
     job.progress.begin("training the recogniser", Some(u64::from(params.epochs)), Unit::Items);
-    let recogniser = fit_view_classifier(&views, &params.view_training(), &compute, &mut |_, loss| {
+    let networks = fit_view_networks(source, &training, &compute, &mut |_, loss, best_view| {
         job.progress.advance(1);
         statistics.set("recogniser_loss", f64::from(loss));
+        best_view.into_iter().for_each(|loss| statistics.set("best_view_loss", f64::from(loss)));
         job.progress.stopped()
     });
     job.progress.end();
-    recogniser
+    let (recogniser, mut best_view) = networks?;
+    let states_best = given.is_some() && params.view_episodes > 0 && rendered.views(0)?.has_best();
+    if states_best && !job.progress.stopped() {
+        job.progress.begin(
+            "training the estimator of the best view",
+            Some(u64::from(params.epochs)),
+            Unit::Items,
+        );
+        let trained = fit_best_view(&mut rendered, &training, &compute, &mut |_, loss| {
+            job.progress.advance(1);
+            statistics.set("best_view_loss", f64::from(loss));
+            job.progress.stopped()
+        });
+        job.progress.end();
+        best_view = Some(trained?);
+    }
+    Ok((recogniser, best_view))
 }
 
 /// Trains the camera policy.
 fn fit_policy(
     params: &ActiveParams,
     fit_params: &ActiveFitParams,
-    scene: &dyn Fn() -> Result<EnvironmentScene<ViewClassifier>>,
+    (scene, best_view): (&dyn Fn() -> Result<EnvironmentScene<ViewClassifier>>, Option<BestViewEstimator>),
     job: &FitJob<'_>,
 ) -> Result<ActiveModel> {
     let total = fit_params.total_timesteps;
     job.progress.begin("training the camera policy", Some(total), Unit::Steps);
     let mut done = 0;
-    let model = train_active(scene, &fit_params.active_training(params), &mut |steps, _| {
+    let model = train_active(scene, best_view, &fit_params.active_training(params), &mut |steps, _| {
         job.progress.advance(steps.min(total) - done);
         done = steps.min(total);
         job.progress.stopped()

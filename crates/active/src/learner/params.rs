@@ -27,16 +27,17 @@ pub struct ActiveFitParams {
     /// only calibrates the belief.
     #[param(default = 400_000, range = 0..=1_000_000_000, alias = "iters")]
     pub total_timesteps: u64,
-    /// Number of episodes whose views train the recogniser, if no data set is given; 0 keeps the recogniser of the base model.
+    /// Number of episodes in each epoch whose views train the estimator of the best view and, if no data set is given, the recogniser; 0
+    /// keeps those of the base model.
     #[param(default = 12_000, range = 0..=10_000_000)]
     pub view_episodes: u64,
-    /// Number of epochs of the recogniser.
-    #[param(default = 8, range = 1..=1000)]
+    /// Number of epochs of recogniser and estimator.
+    #[param(default = 6, range = 1..=1000)]
     pub epochs: u32,
-    /// Kernels of the first convolution of the recogniser; the second has twice as many.
-    #[param(default = 24, range = 1..=512)]
+    /// Kernels of the first convolution of recogniser and estimator; the second has twice, the third three times as many.
+    #[param(default = 16, range = 1..=512)]
     pub kernels: u32,
-    /// Neurons of the recogniser's hidden layer.
+    /// Neurons of their hidden layers.
     #[param(default = 128, range = 1..=4096)]
     pub hidden: u32,
     /// Number of environments.
@@ -66,7 +67,7 @@ impl ActiveFitParams {
         let kernels = self.kernels as usize;
         let config = ViewClassifierConfig {
             side: 0,
-            kernels: vec![kernels, 2 * kernels],
+            kernels: vec![kernels, 2 * kernels, 3 * kernels],
             hidden: self.hidden as usize,
             dimension: 24,
             classes: 0,

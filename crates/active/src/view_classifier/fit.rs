@@ -1,16 +1,16 @@
 //! Training of classifiers on labelled views.
 
-use opendr_engine::{Error, Random, Result};
-use opendr_kernels::{
-    Adam, AdamOptions, Compute, Initialisation, Matrix, MatrixMut, Product, Tape, WeightDecay, log_softmax,
-};
+use opendr_engine::{Random, Result};
+use opendr_kernels::{Compute, Matrix, MatrixMut, Product, log_softmax};
 
-use super::{LabelledViews, ViewClassifier, ViewClassifierConfig, normalise, normalised_planes};
+use super::{ViewClassifier, ViewClassifierConfig, normalise};
+use crate::best_view::BestViewEstimator;
+use crate::view_network::{BATCH, LabelledViews, Trainee, ViewLoss, ViewSource, ViewTrainee, fit_views};
 
-/// Training of a classifier.
+/// Training of networks over views.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ViewTraining {
-    /// Sizes of the classifier.
+    /// Sizes of the classifier; side and classes are those of the views.
     pub config: ViewClassifierConfig,
     /// Number of epochs.
     pub epochs: usize,
@@ -18,89 +18,67 @@ pub struct ViewTraining {
     pub seed: u64,
 }
 
-const BATCH: usize = 64;
-const RATE: f32 = 1e-3;
-
-/// Trains by cross-entropy over the classes. `observer` receives the number of the epoch and its mean loss; it returns whether
-/// to stop.
-///
-/// # Errors
-/// Returns `InvalidInput` for fewer views than a batch of 64, `Internal` if the training diverges.
-pub fn fit_view_classifier(
-    views: &LabelledViews,
-    training: &ViewTraining,
-    compute: &Compute,
-    observer: &mut dyn FnMut(usize, f32) -> bool,
-) -> Result<ViewClassifier> {
-    let config = ViewClassifierConfig { side: views.side, classes: views.classes, ..training.config.clone() };
-    if views.len() < BATCH {
-        return Err(Error::invalid_input(format!(
-            "{} views to train on; give at least {BATCH}",
-            views.len()
-        )));
+impl ViewTraining {
+    /// Number of epochs and seed.
+    pub(crate) fn run(&self) -> (usize, u64) {
+        (self.epochs, self.seed)
     }
-    let mut random = Random::from_key([training.seed, 0xe3b]);
-    let network = config.network()?;
-    let (classes, dimension) = (config.classes, config.dimension);
-    let split = network.parameters();
-    let mut parameters = vec![0.0; split + classes * dimension];
-    let begin = Initialisation::Orthogonal { hidden: std::f32::consts::SQRT_2, output: 1.0 };
-    network.initialise(begin, &mut random, &mut parameters[..split]);
-    parameters[split..].iter_mut().for_each(|weight| *weight = random.normal() as f32);
-    let options = AdamOptions { weight_decay: WeightDecay::Decoupled(1e-3), ..AdamOptions::default() };
-    let mut adam = Adam::new(parameters.len(), options);
-    let mut gradients = vec![0.0; parameters.len()];
-    let mut pass = Pass::new(classes, dimension);
-    let size = network.inputs();
-    let (mut tape, mut input) = (Tape::default(), vec![0.0; BATCH * size]);
-    let mut order: Vec<usize> = (0..views.len()).collect();
-    let batches = views.len() / BATCH;
-    for epoch in 0..training.epochs {
-        random.shuffle(&mut order);
-        let mut sum = 0.0;
-        for (batch, rows) in order.chunks_exact(BATCH).enumerate() {
-            for (to, row) in input.chunks_exact_mut(size).zip(rows) {
-                normalised_planes(views.view(*row), to);
-            }
-            gradients.fill(0.0);
-            let (weights, directions) = parameters.split_at(split);
-            let embedded = network.forward(compute, weights, &input, &mut tape);
-            let labels = rows.iter().map(|row| views.labels[*row]);
-            let (dnetwork, ddirections) = gradients.split_at_mut(split);
-            sum += pass.run(compute, (embedded, directions), labels, ddirections);
-            network.backward(compute, weights, &pass.dembedded, &mut tape, Some(dnetwork), false);
-            let done = (epoch * batches + batch) as f32 / (training.epochs * batches) as f32;
-            adam.step(compute, RATE * (1.0 - done), &mut parameters, &gradients);
-        }
-        let loss = sum / batches as f32;
-        if !loss.is_finite() {
-            return Err(Error::internal(format!(
-                "the loss of epoch {epoch} is {loss}: the training diverged"
-            )));
-        }
-        if observer(epoch, loss) {
-            break;
-        }
-    }
-    parameters[split..].chunks_exact_mut(dimension).for_each(|direction| {
-        normalise(direction);
-    });
-    Ok(ViewClassifier::new(config, network, parameters))
 }
 
-/// The loss with its gradients.
-struct Pass {
+/// Trains a classifier by cross-entropy over the classes and, where the views have the direction to the best one, an estimator of it.
+/// `observer` receives the number of the epoch and the mean losses of both; it returns whether to stop.
+///
+/// # Errors
+/// Returns `InvalidInput` for fewer views than a batch of 64, `Internal` if the training diverges, errors of the source.
+pub fn fit_view_networks(
+    source: &mut dyn ViewSource,
+    training: &ViewTraining,
+    compute: &Compute,
+    observer: &mut dyn FnMut(usize, f32, Option<f32>) -> bool,
+) -> Result<(ViewClassifier, Option<BestViewEstimator>)> {
+    let views = source.views(0)?;
+    let config = ViewClassifierConfig { side: views.side, classes: views.classes, ..training.config.clone() };
+    config.check()?;
+    let (classes, dimension) = (config.classes, config.dimension);
+    let loss = ClassLoss::new(classes, dimension);
+    let mut random = Random::from_key([training.seed, 0xe3b]);
+    let mut trainee = ViewTrainee::new(config.network_config(), loss, classes * dimension, &mut random)?;
+    let best = views.has_best().then(|| BestViewEstimator::trainee(views, training));
+    let best = match best.transpose()? {
+        None => {
+            fit_views(source, [&mut trainee], training.run(), compute, &mut |epoch, [loss]| {
+                observer(epoch, loss, None)
+            })?;
+            None
+        }
+        Some(mut best) => {
+            let trainees: [&mut dyn Trainee; 2] = [&mut trainee, &mut best];
+            fit_views(source, trainees, training.run(), compute, &mut |epoch, [loss, best]| {
+                observer(epoch, loss, Some(best))
+            })?;
+            Some(BestViewEstimator::trained(best))
+        }
+    };
+    let network = trainee.into_network(|directions| {
+        directions.chunks_exact_mut(dimension).for_each(|direction| {
+            normalise(direction);
+        });
+    });
+    Ok((ViewClassifier { config, network }, best))
+}
+
+/// Cross-entropy over the classes, whose directions are its own parameters.
+struct ClassLoss {
     dimension: usize,
     directions: Vec<f32>,
     lengths: Vec<f32>,
     logits: Vec<f32>,
     logs: Vec<f32>,
     probabilities: Vec<f32>,
-    dembedded: Vec<f32>,
     ddirections: Vec<f32>,
 }
 
-impl Pass {
+impl ClassLoss {
     fn new(classes: usize, dimension: usize) -> Self {
         let row = || vec![0.0; BATCH * classes];
         Self {
@@ -110,7 +88,6 @@ impl Pass {
             logits: row(),
             logs: row(),
             probabilities: row(),
-            dembedded: vec![0.0; BATCH * dimension],
             ddirections: vec![0.0; classes * dimension],
         }
     }
@@ -121,41 +98,37 @@ impl Pass {
             *length = normalise(direction);
         }
     }
+}
 
-    /// The mean loss; writes the gradient of the embeddings, and adds that of the weights.
+impl ViewLoss for ClassLoss {
     fn run(
         &mut self,
         compute: &Compute,
         (embedded, weights): (&[f32], &[f32]),
-        labels: impl Iterator<Item = usize>,
-        dweights: &mut [f32],
+        (views, rows): (&LabelledViews, &[usize]),
+        (dembedded, dweights): (&mut [f32], &mut [f32]),
     ) -> f32 {
         self.normalise(weights);
         let (classes, dimension) = (self.lengths.len(), self.dimension);
         let directions = Matrix::new(&self.directions, classes, dimension);
-        let rows = Matrix::new(embedded, BATCH, dimension);
+        let embedded = Matrix::new(embedded, BATCH, dimension);
         Product::new().run(
             compute,
-            rows,
+            embedded,
             directions.transposed(),
             MatrixMut::new(&mut self.logits, BATCH, classes),
         );
         log_softmax(compute.isa(), &self.logits, classes, &mut self.logs, &mut self.probabilities);
         let mut loss = 0.0;
-        for (row, label) in labels.enumerate() {
-            loss -= self.logs[row * classes + label];
-            self.probabilities[row * classes + label] -= 1.0;
+        for (at, label) in rows.iter().map(|row| views.labels[*row]).enumerate() {
+            loss -= self.logs[at * classes + label];
+            self.probabilities[at * classes + label] -= 1.0;
         }
         self.probabilities.iter_mut().for_each(|gradient| *gradient /= BATCH as f32);
         let dlogits = Matrix::new(&self.probabilities, BATCH, classes);
-        Product::new().run(
-            compute,
-            dlogits,
-            directions,
-            MatrixMut::new(&mut self.dembedded, BATCH, dimension),
-        );
+        Product::new().run(compute, dlogits, directions, MatrixMut::new(dembedded, BATCH, dimension));
         let ddirections = MatrixMut::new(&mut self.ddirections, classes, dimension);
-        Product::new().run(compute, dlogits.transposed(), rows, ddirections);
+        Product::new().run(compute, dlogits.transposed(), embedded, ddirections);
         // The length of a direction is not trained: the gradient along it is removed.
         let pairs = self.ddirections.chunks_exact(dimension).zip(self.directions.chunks_exact(dimension));
         for ((dweight, (ddirection, direction)), length) in

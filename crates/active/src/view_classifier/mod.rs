@@ -1,21 +1,15 @@
 //! A small convolutional network that classifies single views.
 
 mod fit;
-mod labelled_views;
 
-use std::sync::Arc;
-
-use opendr_engine::data::{Image, Pixels};
+use opendr_engine::data::Image;
 use opendr_engine::{Error, Result};
-use opendr_kernels::{Activation, Compute, Conv2d, Dense, Layer, Network, Tape};
-use opendr_vision::resize;
 use serde::{Deserialize, Serialize};
 
-pub use fit::{ViewTraining, fit_view_classifier};
-pub use labelled_views::LabelledViews;
+pub use fit::{ViewTraining, fit_view_networks};
 
 use crate::recogniser::ViewRecogniser;
-use crate::rgb_image::rgb_image;
+use crate::view_network::{ViewNetwork, ViewNetworkConfig};
 
 /// Sizes of a classifier.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,7 +17,7 @@ use crate::rgb_image::rgb_image;
 pub struct ViewClassifierConfig {
     /// Width and height of the input in pixels.
     pub side: usize,
-    /// Kernels of each convolution: the first of 6 x 6 with a stride of 4, the others of 3 x 3 with a stride of 2.
+    /// Kernels of each convolution of 3 x 3 with a stride of 2.
     pub kernels: Vec<usize>,
     /// Neurons of the hidden layer.
     pub hidden: usize,
@@ -38,54 +32,27 @@ pub struct ViewClassifierConfig {
 #[derive(Debug, Clone)]
 pub struct ViewClassifier {
     config: ViewClassifierConfig,
-    network: Network,
-    /// Parameters of the network, then the directions.
-    parameters: Arc<Vec<f32>>,
-    compute: Compute,
-    tape: Tape,
-    input: Vec<f32>,
+    /// The embedding, and the directions of the classes as its own parameters.
+    network: ViewNetwork,
 }
 
-/// Maximum number of parameters that a file may ask for.
-const MAX_PARAMETERS: usize = 1 << 26;
-
 impl ViewClassifierConfig {
-    fn network(&self) -> Result<Network> {
-        let Self { side, kernels, hidden, dimension, classes } = self;
-        let in_range = |size: &usize| (1..=4096).contains(size);
-        if ![side, hidden, dimension, classes].into_iter().chain(kernels).all(in_range) || *classes < 2 {
-            return Err(Error::invalid_param(format!(
-                "{self:?}: give sizes in 1..=4096 and at least 2 classes"
-            )));
+    pub(crate) fn network_config(&self) -> ViewNetworkConfig {
+        let Self { side, kernels, hidden, dimension, .. } = self;
+        ViewNetworkConfig { side: *side, kernels: kernels.clone(), hidden: *hidden, outputs: *dimension }
+    }
+
+    fn check(&self) -> Result<()> {
+        match self.classes {
+            2..=4096 => Ok(()),
+            classes => Err(Error::invalid_param(format!(
+                "a classifier of views of {classes} classes; give 2 to 4096"
+            ))),
         }
-        let mut shape = [3, *side, *side];
-        let mut layers = Vec::new();
-        for (at, outputs) in kernels.iter().enumerate() {
-            let [size, stride] = if at == 0 { [6, 4] } else { [3, 2] };
-            let layer = Conv2d::new(shape, *outputs, [size; 2], [stride; 2], [1; 2], Activation::Relu)?;
-            shape = layer.output_shape();
-            layers.push(Layer::Conv2d(layer));
-        }
-        layers.push(Layer::Dense(Dense::new(shape.iter().product(), *hidden, Activation::Relu)?));
-        layers.push(Layer::Dense(Dense::new(*hidden, *dimension, Activation::Identity)?));
-        let network = Network::new(layers)?;
-        if network.parameters() > MAX_PARAMETERS {
-            return Err(Error::invalid_param(format!(
-                "{self:?} has {} parameters; the maximum is {MAX_PARAMETERS}",
-                network.parameters()
-            )));
-        }
-        Ok(network)
     }
 }
 
 impl ViewClassifier {
-    fn new(config: ViewClassifierConfig, network: Network, parameters: Vec<f32>) -> Self {
-        let parameters = Arc::new(parameters);
-        let compute = Compute::single();
-        Self { config, network, parameters, compute, tape: Tape::default(), input: Vec::new() }
-    }
-
     /// Returns the sizes.
     pub fn config(&self) -> &ViewClassifierConfig {
         &self.config
@@ -93,7 +60,7 @@ impl ViewClassifier {
 
     /// Returns the parameters as little-endian `f32`.
     pub fn to_bytes(&self) -> Vec<u8> {
-        self.parameters.iter().flat_map(|value| value.to_le_bytes()).collect()
+        self.network.to_bytes()
     }
 
     /// Creates a classifier from the bytes of [`Self::to_bytes`].
@@ -101,10 +68,10 @@ impl ViewClassifier {
     /// # Errors
     /// Returns `InvalidParam` for sizes out of range, `Format` for bytes that do not fit them.
     pub fn from_bytes(config: ViewClassifierConfig, bytes: &[u8]) -> Result<Self> {
-        let network = config.network()?;
-        let count = network.parameters() + config.classes * config.dimension;
-        let parameters = crate::parameter_bytes::parse("the classifier of views", bytes, count)?;
-        Ok(Self::new(config, network, parameters))
+        config.check()?;
+        let (network, own) = (config.network_config(), config.classes * config.dimension);
+        let network = ViewNetwork::from_bytes("the classifier of views", network, own, bytes)?;
+        Ok(Self { config, network })
     }
 }
 
@@ -114,49 +81,14 @@ impl ViewRecogniser for ViewClassifier {
     }
 
     fn recognise(&mut self, image: &Image, evidence: &mut [f32]) -> Result<()> {
-        let side = self.config.side;
-        let image = &*rgb_image(image)?;
-        let resized;
-        let image = if [image.width(), image.height()] == [side; 2] {
-            image
-        } else {
-            resized = resize(image, side, side)?;
-            &resized
-        };
-        let Pixels::U8(pixels) = image.pixels() else {
-            return Err(Error::internal("an image of bytes that was resized to other samples"));
-        };
-        self.input.resize(pixels.len(), 0.0);
-        normalised_planes(pixels, &mut self.input);
-        let Self { config, network, parameters, compute, tape, input } = self;
-        let (weights, directions) = parameters.split_at(network.parameters());
-        let embedding = network.forward(compute, weights, input, tape);
-        for (logit, direction) in evidence.iter_mut().zip(directions.chunks_exact(config.dimension)) {
+        let (embedding, directions) = self.network.forward(image)?;
+        for (logit, direction) in evidence.iter_mut().zip(directions.chunks_exact(self.config.dimension)) {
             *logit = direction.iter().zip(embedding).map(|(a, b)| a * b).sum();
         }
         let highest = evidence.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         let sum: f32 = evidence.iter().map(|logit| (logit - highest).exp()).sum();
         evidence.iter_mut().for_each(|logit| *logit -= highest + sum.ln());
         Ok(())
-    }
-}
-
-/// Writes `[height, width, 3]` bytes as `[3, height, width]` numbers with mean 0 and deviation 1 over the image, so that the
-/// brightness of the light has no effect.
-fn normalised_planes(pixels: &[u8], planes: &mut [f32]) {
-    let size = pixels.len() / 3;
-    let (mut sum, mut squares) = (0u64, 0u64);
-    for level in pixels {
-        sum += u64::from(*level);
-        squares += u64::from(*level) * u64::from(*level);
-    }
-    let count = pixels.len() as f32;
-    let mean = sum as f32 / count;
-    let scale = 1.0 / (squares as f32 / count - mean * mean).max(1.0).sqrt();
-    for (at, pixel) in pixels.as_chunks::<3>().0.iter().enumerate() {
-        for (channel, level) in pixel.iter().enumerate() {
-            planes[channel * size + at] = (f32::from(*level) - mean) * scale;
-        }
     }
 }
 

@@ -7,14 +7,14 @@ use opendr_engine::target::Action;
 use opendr_simulation::RegisteredSource;
 use opendr_test_allocator::allocations_of_thread;
 
-use crate::small::{small_classifier, source};
+use crate::small::{small_networks, source};
 
 #[test]
 fn steps_allocate_nothing() {
     let source = source();
-    let recogniser = small_classifier(&source);
+    let (recogniser, best_view) = small_networks();
     let scene = EnvironmentScene::new(&source, recogniser.clone()).unwrap();
-    let mut view_loop = ViewLoop::new(scene, Fusion::default(), 6).unwrap();
+    let mut view_loop = ViewLoop::new(scene, Fusion::default(), 6, Some(best_view)).unwrap();
     let action = Action::new(&[0.5, 0.1, -0.2]).unwrap();
     view_loop.begin(&mut Random::new(1)).unwrap();
     (0..6).for_each(|_| assert!(view_loop.step(&action).unwrap().effort() <= 1.0));
@@ -26,5 +26,5 @@ fn steps_allocate_nothing() {
     let error = EnvironmentScene::new(&objects, recogniser).err().unwrap().to_string();
     assert!(error.contains("a recogniser of 10 classes in an environment of 15"), "{error}");
     let other = RegisteredSource::new("CartPole-v1", &ParamMap::new()).unwrap();
-    assert!(EnvironmentScene::new(&other, small_classifier(&source)).is_err());
+    assert!(EnvironmentScene::new(&other, small_networks().0).is_err());
 }

@@ -42,6 +42,9 @@ fn trained(folder: &std::path::Path) -> Model {
     let before = ActiveContainer::read(&model).unwrap();
     assert_eq!(again.model.policy.parameters(), before.model.policy.parameters());
     assert_eq!(again.recogniser.to_bytes(), before.recogniser.to_bytes());
+    let best_view = |container: &ActiveContainer| container.model.best_view.as_ref().unwrap().to_bytes();
+    assert_eq!(best_view(&again), best_view(&before));
+    assert!(statistics.get("best_view_loss").is_some(), "{statistics}");
     model
 }
 

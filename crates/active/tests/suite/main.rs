@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod allocation;
+mod best_view;
 mod camera_policies;
 mod learner;
 mod learning;

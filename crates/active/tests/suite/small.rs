@@ -1,7 +1,8 @@
-//! A small recogniser of the poses of SphereView-Pose-v1.
+//! A small recogniser of the poses of SphereView-Pose-v1, and an estimator of the best view.
 
 use opendr_active::{
-    EnvironmentRig, LabelledViews, ViewClassifier, ViewClassifierConfig, ViewTraining, fit_view_classifier,
+    BestViewEstimator, EnvironmentRig, FreshViews, ViewClassifier, ViewClassifierConfig, ViewTraining,
+    fit_view_networks,
 };
 use opendr_engine::environment::EnvironmentSource as _;
 use opendr_engine::params::ParamMap;
@@ -12,16 +13,23 @@ pub fn source() -> RegisteredSource {
     RegisteredSource::new("SphereView-Pose-v1", &ParamMap::new()).unwrap()
 }
 
-pub fn small_classifier(source: &RegisteredSource) -> ViewClassifier {
-    let mut rigs = [EnvironmentRig::new(source.make().unwrap()).unwrap()];
-    let views = LabelledViews::collect(&mut rigs, 0, 40).unwrap();
+pub fn views(episodes: u64) -> FreshViews {
+    FreshViews::new(vec![EnvironmentRig::new(source().make().unwrap()).unwrap()], 0, episodes)
+}
+
+pub fn training(epochs: usize) -> ViewTraining {
     let config = ViewClassifierConfig { side: 0, kernels: vec![8, 8], hidden: 16, dimension: 8, classes: 0 };
-    let training = ViewTraining { config, epochs: 3, seed: 1 };
+    ViewTraining { config, epochs, seed: 1 }
+}
+
+pub fn small_networks() -> (ViewClassifier, BestViewEstimator) {
     let mut losses = Vec::new();
-    let classifier = fit_view_classifier(&views, &training, &Compute::single(), &mut |_, loss| {
-        losses.push(loss);
-        false
-    });
-    assert!(losses[2] < losses[0], "{losses:?}");
-    classifier.unwrap()
+    let (classifier, best_view) =
+        fit_view_networks(&mut views(40), &training(5), &Compute::single(), &mut |_, loss, best_view| {
+            losses.push([loss, best_view.unwrap()]);
+            false
+        })
+        .unwrap();
+    assert!(losses[4][0] < losses[0][0] && losses[4][1] < losses[0][1], "{losses:?}");
+    (classifier, best_view.unwrap())
 }

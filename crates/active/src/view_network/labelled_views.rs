@@ -7,6 +7,7 @@ use opendr_engine::target::Action;
 use opendr_engine::{Error, Random, Result, ResultExt as _, Value, map_in_order};
 use opendr_vision::resize;
 
+use crate::best_view::in_camera_frame;
 use crate::camera_policy::{CameraContext, CameraPolicy as _, OracleBaseline};
 use crate::environment_rig::EnvironmentRig;
 use crate::rgb_image::rgb_image;
@@ -20,6 +21,9 @@ pub struct LabelledViews {
     pub pixels: Vec<u8>,
     /// Class index of each view.
     pub labels: Vec<usize>,
+    /// Direction from the subject to the best camera pose in the camera's frame, of each view; empty where the environment does not
+    /// state it.
+    pub best: Vec<[f32; 3]>,
     /// Number of classes.
     pub classes: usize,
 }
@@ -39,12 +43,17 @@ impl LabelledViews {
     pub fn collect(rigs: &mut [EnvironmentRig], first: u64, episodes: u64) -> Result<Self> {
         let Some(rig) = rigs.first() else { return Ok(Self::default()) };
         let mut views = Self { side: rig.side(), classes: rig.classes(), ..Self::default() };
-        let collect = |rig: &mut EnvironmentRig, seed: u64| -> Result<(usize, Vec<u8>)> {
+        let collect = |rig: &mut EnvironmentRig, seed: u64| -> Result<(usize, Vec<u8>, Vec<[f32; 3]>)> {
             let class = rig.begin(seed)?;
             let mut random = Random::from_key([seed, 0x71e3]);
             let explores = random.chance(RANDOM);
             let axes = rig.axes().to_vec();
             let mut pixels = rig.pixels()?.to_vec();
+            let direction = |rig: &EnvironmentRig| {
+                rig.best_pose()
+                    .map(|best| in_camera_frame(&rig.pose(), best.direction().map(|part| part as f32)))
+            };
+            let mut best: Vec<_> = direction(rig).into_iter().collect();
             let mut action = vec![0.0; axes.len()];
             for _ in 0..MOTIONS {
                 if let (Some(best), false) = (rig.best_pose(), explores) {
@@ -60,12 +69,14 @@ impl LabelledViews {
                 }
                 rig.apply(&Action::new(&action)?)?;
                 pixels.extend_from_slice(rig.pixels()?);
+                best.extend(direction(rig));
             }
-            Ok((class, pixels))
+            Ok((class, pixels, best))
         };
         map_in_order(rigs, first..first + episodes, collect, |collected| {
-            let (class, pixels) = collected?;
+            let (class, pixels, best) = collected?;
             views.pixels.extend(pixels);
+            views.best.extend(best);
             views.labels.extend([class; MOTIONS + 1]);
             Ok::<_, Error>(())
         })?;
@@ -113,12 +124,17 @@ impl LabelledViews {
         self.labels.len()
     }
 
+    /// Returns whether the direction to the best camera pose is known.
+    pub fn has_best(&self) -> bool {
+        !self.is_empty() && self.best.len() == self.len()
+    }
+
     /// Returns whether there are no views.
     pub fn is_empty(&self) -> bool {
         self.labels.is_empty()
     }
 
-    pub(super) fn view(&self, at: usize) -> &[u8] {
+    pub(crate) fn view(&self, at: usize) -> &[u8] {
         let size = 3 * self.side * self.side;
         &self.pixels[at * size..(at + 1) * size]
     }
