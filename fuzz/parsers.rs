@@ -5,13 +5,18 @@ use opendr_engine::Value;
 use opendr_engine::data::Image;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::{BoundingBox3DList, TrackingAnnotationList};
+use opendr_executor::{Data, Executor, Kind, Tensor};
+use opendr_kernels::Compute;
 use opendr_metrics::coco::files::{CocoFiles, CocoKind};
+use opendr_odometry::{
+    Alignment, KITTI_LENGTHS, Trajectory, absolute_errors, kitti_drift, relative_errors,
+};
 
 /// A parser of bytes from outside: it may refuse them, it may not panic.
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 29] = [
+pub const PARSERS: [(&str, Parser); 31] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("tflite", tflite),
@@ -41,7 +46,51 @@ pub const PARSERS: [(&str, Parser); 29] = [
     ("bag1", recording),
     ("mcap", recording),
     ("parquet", parquet),
+    ("onnx", onnx),
+    ("trajectory_text", trajectory_text),
 ];
+
+/// A model for the built-in runtime. Where it opens, it runs on ones, with 2 for each open dimension.
+fn onnx(bytes: &[u8]) {
+    const LARGEST: usize = 1 << 16;
+    let Ok(mut executor) = Executor::open(bytes, Compute::single()) else { return };
+    let shapes: Vec<Vec<usize>> =
+        executor.input_shapes().map(|dims| dims.iter().map(|dim| dim.unwrap_or(2)).collect()).collect();
+    let count = |shape: &Vec<usize>| shape.iter().try_fold(1, |count: usize, dim| count.checked_mul(*dim));
+    let counts: Option<Vec<usize>> = shapes.iter().map(count).collect();
+    let Some(counts) = counts.filter(|counts| counts.iter().all(|count| *count <= LARGEST)) else { return };
+    let (floats, longs, ints) = (vec![1.0; LARGEST], vec![1; LARGEST], vec![1; LARGEST]);
+    let (bytes, signed) = (vec![1; LARGEST], vec![1; LARGEST]);
+    let kinds: Vec<Kind> = executor.inputs().map(|(_, kind)| kind).collect();
+    let inputs = shapes.iter().zip(counts).zip(kinds).map(|((shape, count), kind)| {
+        let data = match kind {
+            Kind::F32 | Kind::F16 => Data::F32(&floats[..count]),
+            Kind::I64 => Data::I64(&longs[..count]),
+            Kind::I32 => Data::I32(&ints[..count]),
+            Kind::U8 => Data::U8(&bytes[..count]),
+            Kind::I8 => Data::I8(&signed[..count]),
+            Kind::Bool => Data::Bool(&bytes[..count]),
+        };
+        Tensor { shape, data }
+    });
+    executor.run(&inputs.collect::<Vec<_>>(), &mut |_| Ok(())).ok();
+}
+
+/// Trajectories in the formats of TUM and KITTI. What was read is written and read again, and compared with itself.
+fn trajectory_text(bytes: &[u8]) {
+    let text = String::from_utf8_lossy(bytes);
+    if let Ok(trajectory) = Trajectory::from_tum(&text) {
+        assert_eq!(Trajectory::from_tum(&trajectory.to_tum()).unwrap().len(), trajectory.len());
+        if let Ok((truth, estimate)) = trajectory.associated(&trajectory, 0.01) {
+            absolute_errors(&truth, &estimate, Alignment::Scaled).ok();
+            relative_errors(&truth, &estimate, 1).ok();
+        }
+    }
+    if let Ok(trajectory) = Trajectory::from_kitti(&text, 10.0) {
+        assert_eq!(Trajectory::from_kitti(&trajectory.to_kitti(), 10.0).unwrap().len(), trajectory.len());
+        kitti_drift(&trajectory, &trajectory, &KITTI_LENGTHS).ok();
+    }
+}
 
 /// A table of a data set of LeRobot.
 fn parquet(bytes: &[u8]) {

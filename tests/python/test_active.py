@@ -21,7 +21,7 @@ def test_a_camera_is_trained_measured_and_moved(opendr, tmp_path):
     rows = json.loads(done.stdout)["rows"]
     assert [row["camera_policy"] for row in rows] == ["static", "random", "orbit", "greedy", "policy", "oracle"]
     assert rows[0]["mean_views"] == 1 and rows[4]["episodes"] == 5
-    assert (tmp_path / "eval/episodes.png").exists() and (tmp_path / "eval/report.json").exists()
+    assert all((tmp_path / "eval" / name).exists() for name in ("episodes.png", "episodes.gif", "report.json"))
 
     # A page changes no figure. On other interfaces its address has a token, which is printed with --quiet, too.
     page = f"--view=0.0.0.0:{free_port()}"
@@ -41,6 +41,9 @@ def test_a_camera_is_trained_measured_and_moved(opendr, tmp_path):
     for option, word in [(["--env-param", "size=1"], "--env-param"), (["--rig-seed", "3"], "has no seed")]:
         done = opendr.run("infer", *model, "--rig", strip, *option)
         assert done.returncode != 0 and word in done.stderr, done.stderr
+    film = tmp_path / "run.gif"
+    done = opendr.run("infer", *model, "--rig", "SphereView-Pose-v1", "--out", film, "--quiet")
+    assert done.returncode == 0 and film.read_bytes()[:6] == b"GIF89a", done.stderr
     # An image without a rig: the target has the motion to the next view.
     line = opendr.infer(*model, strip)[0]
     assert len(line["outputs"]["category"].get("action", [0, 0, 0])) == 3

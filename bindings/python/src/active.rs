@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use opendr::active::rig::RigOptions;
 use opendr::active::{
-    Active as Loop, ActiveContainer, ActiveModel, Outcome, ViewRecogniser, logarithms, strip_of_views,
+    Active as Loop, ActiveContainer, ActiveModel, EpisodeStrip, Outcome, ViewRecogniser, logarithms,
     write_evidence,
 };
 use opendr::data::Image;
@@ -67,7 +67,7 @@ impl Active {
     }
 
     /// Moves a rig until the class is certain. `rig` is a name, an image or an object; `options` are those of named rigs. Returns the
-    /// images of the views, and the run as JSON; with `out`, writes the views side by side into this file.
+    /// images of the views, and the run as JSON; with `out`, writes the views side by side into this file, for .gif and videos as a film.
     fn run<'py>(
         &self,
         py: Python<'py>,
@@ -80,7 +80,7 @@ impl Active {
             let mut active = self.active.lock().unwrap_or_else(PoisonError::into_inner);
             let outcome = active.run(rig.open()?.as_mut())?;
             if let Some(out) = out {
-                opendr::vision::save(&strip_of_views(&outcome)?, out)?;
+                EpisodeStrip::of(&outcome)?.save(&out)?;
             }
             let json = json_of(&outcome)?;
             Ok((outcome, json))

@@ -1,8 +1,11 @@
 //! A strip of images of episodes: the views of an episode from left to right, with the confidence below each.
 
+use std::path::Path;
+
 use opendr_engine::data::{Image, Pixels};
 use opendr_engine::target::Action;
 use opendr_engine::{Random, Result};
+use opendr_simulation::Recording;
 use opendr_vision::resize;
 
 use crate::active::Outcome;
@@ -20,63 +23,113 @@ const EDGE: usize = 4;
 const GREEN: [u8; 3] = [60, 170, 80];
 const RED: [u8; 3] = [205, 70, 60];
 const GREY: [u8; 3] = [110, 110, 110];
+/// Views per second of a film, and for how many views its end is shown.
+const RATE: f64 = 1.5;
+const END: usize = 3;
 
-/// Draws the episodes with seeds from `first_seed` on, one per row. The length of the bar below a view is the probability of
-/// the most likely class; it is green if that is the true class.
+/// The views of episodes, one episode per row.
 ///
-/// # Errors
-/// Returns errors of the scene.
-pub fn episode_strip<S: ActiveScene>(
-    scene: S,
-    model: &ActiveModel,
-    first_seed: u64,
-    rows: usize,
-) -> Result<Image> {
-    let columns = model.stop.moves + 1;
-    let [width, height] = [columns * (VIEW + EDGE) + EDGE, rows * (VIEW + BAR + EDGE) + EDGE];
-    let mut strip = vec![245; 3 * width * height];
-    let mut view_loop = ViewLoop::new(scene, model.fusion, model.stop.moves, model.best_view.clone())?;
-    let mut policy = TrainedPolicy::new(model.policy.clone());
-    let axes = view_loop.scene().rig().axes().to_vec();
-    let (mut observation, mut action) = (vec![0.0; Observer::LEN], vec![0.0; axes.len()]);
-    for row in 0..rows {
-        let seed = first_seed + row as u64;
-        view_loop.begin(&mut Random::from_key([seed, EPISODE_KEY]))?;
-        policy.begin(seed);
-        for column in 0..columns {
-            let (class, confidence) = view_loop.belief().best();
-            let at = [EDGE + column * (VIEW + EDGE), EDGE + row * (VIEW + BAR + EDGE)];
-            paste(&mut strip, width, &resize(&view_loop.scene().rig().capture()?, VIEW, VIEW)?, at);
-            let colour = if class == view_loop.class() { GREEN } else { RED };
-            let length = (confidence * VIEW as f32) as usize;
-            fill(&mut strip, width, [at[0], at[1] + VIEW + 2], [length, BAR - 4], colour);
-            if model.stop.reason(column, confidence, None).is_some() {
-                break;
-            }
-            view_loop.observe(&mut observation);
-            let pose = view_loop.pose();
-            let context = CameraContext { observation: &observation, pose, axes: &axes, best: None };
-            policy.choose(&context, &mut action)?;
-            view_loop.step(&Action::new(&action)?)?;
-        }
-    }
-    Image::from_rgb8(strip, width, height)
+/// The length of the bar below a view is the probability of the most likely class. The bar is green if that is the true class, red if it
+/// is not, and grey where the true class is unknown.
+#[derive(Debug, Clone)]
+pub struct EpisodeStrip {
+    rows: Vec<Vec<Cell>>,
 }
 
-/// Draws the views of a run from left to right; the bars below them are grey, since the true class is unknown.
-///
-/// # Errors
-/// Returns `InvalidInput` for images that cannot be resized.
-pub fn strip_of_views(outcome: &Outcome) -> Result<Image> {
-    let [width, height] = [outcome.views.len() * (VIEW + EDGE) + EDGE, VIEW + BAR + 2 * EDGE];
-    let mut strip = vec![245; 3 * width * height];
-    for (column, view) in outcome.views.iter().enumerate() {
-        let at = [EDGE + column * (VIEW + EDGE), EDGE];
-        paste(&mut strip, width, &resize(&view.image, VIEW, VIEW)?, at);
-        let length = (view.confidence * VIEW as f32) as usize;
-        fill(&mut strip, width, [at[0], at[1] + VIEW + 2], [length, BAR - 4], GREY);
+/// A view with its bar.
+#[derive(Debug, Clone)]
+struct Cell {
+    image: Image,
+    confidence: f32,
+    colour: [u8; 3],
+}
+
+impl EpisodeStrip {
+    /// Runs the episodes with seeds from `first_seed` on.
+    ///
+    /// # Errors
+    /// Returns errors of the scene.
+    pub fn run<S: ActiveScene>(scene: S, model: &ActiveModel, first_seed: u64, rows: usize) -> Result<Self> {
+        let mut view_loop = ViewLoop::new(scene, model.fusion, model.stop.moves, model.best_view.clone())?;
+        let mut policy = TrainedPolicy::new(model.policy.clone());
+        let axes = view_loop.scene().rig().axes().to_vec();
+        let (mut observation, mut action) = (vec![0.0; Observer::LEN], vec![0.0; axes.len()]);
+        let mut episode = |row: usize| -> Result<Vec<Cell>> {
+            let seed = first_seed + row as u64;
+            view_loop.begin(&mut Random::from_key([seed, EPISODE_KEY]))?;
+            policy.begin(seed);
+            let mut cells = Vec::new();
+            loop {
+                let (class, confidence) = view_loop.belief().best();
+                let image = resize(&view_loop.scene().rig().capture()?, VIEW, VIEW)?;
+                let colour = if class == view_loop.class() { GREEN } else { RED };
+                cells.push(Cell { image, confidence, colour });
+                if model.stop.reason(cells.len() - 1, confidence, None).is_some() {
+                    return Ok(cells);
+                }
+                view_loop.observe(&mut observation);
+                let pose = view_loop.pose();
+                let context = CameraContext { observation: &observation, pose, axes: &axes, best: None };
+                policy.choose(&context, &mut action)?;
+                view_loop.step(&Action::new(&action)?)?;
+            }
+        };
+        Ok(Self { rows: (0..rows).map(&mut episode).collect::<Result<_>>()? })
     }
-    Image::from_rgb8(strip, width, height)
+
+    /// Creates the strip of a run.
+    ///
+    /// # Errors
+    /// Returns `InvalidInput` for images that cannot be resized.
+    pub fn of(outcome: &Outcome) -> Result<Self> {
+        let cell = |view: &crate::active::View| {
+            let image = resize(&view.image, VIEW, VIEW)?;
+            Ok(Cell { image, confidence: view.confidence, colour: GREY })
+        };
+        Ok(Self { rows: vec![outcome.views.iter().map(cell).collect::<Result<_>>()?] })
+    }
+
+    /// Draws all views.
+    ///
+    /// # Errors
+    /// Returns `InvalidInput` without a row.
+    pub fn image(&self) -> Result<Image> {
+        self.first_views(usize::MAX)
+    }
+
+    /// Saves a film that shows view after view for `.gif`, `.mp4`, `.mov` and `.mkv`, else an image of all views.
+    ///
+    /// # Errors
+    /// Returns errors of [`Recording`] and of [`opendr_vision::save`].
+    pub fn save(&self, path: &Path) -> Result<()> {
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        if !["gif", "mp4", "mov", "mkv"].contains(&extension.to_ascii_lowercase().as_str()) {
+            return opendr_vision::save(&self.image()?, path);
+        }
+        let mut film = Recording::create(path, RATE)?;
+        let views = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        for shown in 1..views + END {
+            film.write(&self.first_views(shown)?)?;
+        }
+        film.finish()
+    }
+
+    /// Draws the first `count` views of each episode.
+    fn first_views(&self, count: usize) -> Result<Image> {
+        let columns = self.rows.iter().map(Vec::len).max().unwrap_or(0);
+        let row_height = VIEW + BAR + EDGE;
+        let [width, height] = [columns * (VIEW + EDGE) + EDGE, self.rows.len() * row_height + EDGE];
+        let mut strip = vec![245; 3 * width * height];
+        for (row, cells) in self.rows.iter().enumerate() {
+            for (column, Cell { image, confidence, colour }) in cells.iter().take(count).enumerate() {
+                let at = [EDGE + column * (VIEW + EDGE), EDGE + row * row_height];
+                paste(&mut strip, width, image, at);
+                let length = (confidence * VIEW as f32) as usize;
+                fill(&mut strip, width, [at[0], at[1] + VIEW + 2], [length, BAR - 4], *colour);
+            }
+        }
+        Image::from_rgb8(strip, width, height)
+    }
 }
 
 fn paste(strip: &mut [u8], width: usize, image: &Image, [left, top]: [usize; 2]) {

@@ -68,7 +68,7 @@ pub use environment::ActiveEnvironment;
 pub use environment_rig::EnvironmentRig;
 pub use environment_scene::EnvironmentScene;
 pub use episode::{ActiveEpisode, run_episode};
-pub use episode_strip::{episode_strip, strip_of_views};
+pub use episode_strip::EpisodeStrip;
 pub use evidence::{ClassEvidence, logarithms};
 pub use fusion::{Belief, Fusion};
 pub use gain::{GainNetwork, GainSamples};

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use opendr_engine::environment::{Controller, Environment, ResetOptions, Step};
+use opendr_engine::environment::{Controller, Environment, Info, ResetOptions, Step};
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Random, Result, ResultExt as _, Statistics};
 use opendr_kernels::Compute;
@@ -29,7 +29,7 @@ pub struct EvaluationProtocol {
 }
 
 /// Statistics of an evaluated episode.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct EvaluatedEpisode {
     /// Seed of its reset.
     pub seed: u64,
@@ -41,6 +41,8 @@ pub struct EvaluatedEpisode {
     pub success: Option<bool>,
     /// Whether it terminated, as opposed to being truncated.
     pub terminated: bool,
+    /// Info of its last step.
+    pub info: Info,
 }
 
 /// A success rate with its confidence interval.
@@ -67,6 +69,8 @@ pub struct EvaluationReport {
     pub mean_length: f64,
     /// Success rate over the episodes that report success; none if none does.
     pub success: Option<SuccessRate>,
+    /// Mean of each other number in the info of the last steps, over the episodes that report it.
+    pub info: Vec<(&'static str, f64)>,
     /// Wall-clock time, in seconds.
     pub seconds: f64,
 }
@@ -183,10 +187,24 @@ impl EvaluationReport {
                 reported.iter().filter(|success| **success).count() as u64,
                 reported.len() as u64,
             ),
+            info: mean_info(&episodes),
             seconds,
             episodes,
         }
     }
+}
+
+/// Means over the episodes that report a number, in the order of the first report.
+fn mean_info(episodes: &[EvaluatedEpisode]) -> Vec<(&'static str, f64)> {
+    let mut sums: Vec<(&'static str, f64, f64)> = Vec::new();
+    for (name, value) in episodes.iter().flat_map(|episode| episode.info.iter()) {
+        match sums.iter_mut().find(|(known, ..)| *known == name) {
+            Some((_, sum, count)) => (*sum, *count) = (*sum + value, *count + 1.0),
+            None => sums.push((name, value, 1.0)),
+        }
+    }
+    let others = sums.into_iter().filter(|(name, ..)| *name != "success");
+    others.map(|(name, sum, count)| (name, sum / count)).collect()
 }
 
 fn run(
@@ -207,7 +225,8 @@ fn run(
         earned += step.reward;
         if step.is_over() || length == max_steps {
             let (success, terminated) = (success(&step), step.terminated);
-            return Ok(EvaluatedEpisode { seed, total_reward: earned, length, success, terminated });
+            let info = step.info;
+            return Ok(EvaluatedEpisode { seed, total_reward: earned, length, success, terminated, info });
         }
     }
     Err(Error::internal("an episode has no steps"))
@@ -233,6 +252,9 @@ impl From<&EvaluationReport> for Statistics {
             statistics.set("success_rate_low", success.interval[0]);
             statistics.set("success_rate_high", success.interval[1]);
         }
+        for (name, mean) in &report.info {
+            statistics.set(format!("final_{name}"), *mean);
+        }
         statistics.set("seconds", report.seconds);
         statistics
     }
@@ -253,6 +275,25 @@ mod tests {
             assert!((got_low - low).abs() < 1e-6 && (got_high - high).abs() < 1e-6, "{rate:?}");
         }
         assert!(SuccessRate::of(0, 0).is_none());
+    }
+
+    #[test]
+    fn numbers_of_last_steps_are_averaged_over_the_episodes_that_report_them() {
+        let episode = |info: Info| EvaluatedEpisode {
+            seed: 0,
+            total_reward: 1.0,
+            length: 2,
+            success: info.success(),
+            terminated: true,
+            info,
+        };
+        let infos = [
+            Info::default().with("success", 1.0).with("spl", 0.5),
+            Info::default().with("success", 0.0).with("spl", 0.0).with("angle", 3.0),
+        ];
+        let report = EvaluationReport::of(infos.into_iter().map(episode).collect(), 1.0);
+        assert_eq!(report.info, [("spl", 0.25), ("angle", 3.0)]);
+        assert_eq!(Statistics::from(&report).get("final_spl"), Some(0.25));
     }
 
     #[test]

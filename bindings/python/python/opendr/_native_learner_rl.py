@@ -84,7 +84,8 @@ class NativeLearnerRL(NativeBase, LearnerRL):
 
         Returns:
             ``mean_return``, ``std_return``, ``mean_length``, ``episodes``, and, if the environment reports success,
-            ``success_rate`` with its 95 % interval, ``success_rate_low`` and ``success_rate_high``. A policy with a prior or a
+            ``success_rate`` with its 95 % interval, ``success_rate_low`` and ``success_rate_high``; for each other number that
+            the environment reports with the last step of an episode, its mean, as ``final_spl``. A policy with a prior or a
             shield also has ``controllers``: the same of prior, policy and both on the same episodes, each with its ``name``
             and, under a shield, the share of ``shielded`` steps.
 

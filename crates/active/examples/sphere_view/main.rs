@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use opendr_active::{
     ActiveFitParams, ActiveTraining, BestViewEstimator, Comparison, EnvironmentRig, EnvironmentScene,
-    FreshViews, ViewClassifier, calibrated, compare, episode_strip, fit_view_networks, train_active,
+    EpisodeStrip, FreshViews, ViewClassifier, calibrated, compare, fit_view_networks, train_active,
 };
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::params::ParamMap;
@@ -58,7 +58,7 @@ fn main() -> Result<()> {
         let scene = || EnvironmentScene::new(&others, enrolled.clone());
         run("other subjects", evaluate(scene()?, &model)?);
         if let (Some(path), 0) = (&options.strip, seed) {
-            opendr_vision::save(&episode_strip(scene()?, &model, options.first_seed, 6)?, path)?;
+            EpisodeStrip::run(scene()?, &model, options.first_seed, 6)?.save(path.as_ref())?;
         }
         let scene = || EnvironmentScene::new(&known, swapped.clone());
         let model = calibrated(&model, &scene, training.calibration_episodes)?;

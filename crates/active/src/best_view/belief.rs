@@ -3,7 +3,6 @@
 use opendr_engine::rig::ViewPose;
 
 use super::estimator::BestViewEstimate;
-use super::frame::in_camera_frame;
 use crate::fusion::Fusion;
 
 /// Number of directions.
@@ -67,12 +66,13 @@ impl BestViewBelief {
         self.probabilities.fill(1.0 / DIRECTIONS as f32);
     }
 
-    /// Adds the estimate of a view from a pose.
+    /// Adds the estimate of a view from a pose, in the frame of its camera.
     pub fn add(&mut self, pose: ViewPose, estimate: &BestViewEstimate) {
         let Self { directions, poses, densities, probabilities } = self;
+        let estimate = estimate.in_rig_frame(&pose);
         poses.push(pose);
         densities.extend(directions.iter().map(|direction| {
-            let density = estimate.density(in_camera_frame(&pose, *direction));
+            let density = estimate.density(*direction);
             ((1.0 - UNKNOWN) * density + UNKNOWN / (4.0 * std::f32::consts::PI)).ln()
         }));
         let fusion = Fusion::default();

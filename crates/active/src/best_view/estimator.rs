@@ -1,8 +1,10 @@
 //! The direction to the best view, from a single view.
 
 use opendr_engine::data::Image;
+use opendr_engine::rig::ViewPose;
 use opendr_engine::{Error, Result};
 
+use super::frame::in_rig_frame;
 use crate::view_network::{ViewNetwork, ViewNetworkConfig};
 
 /// Number of components of an estimate.
@@ -20,7 +22,7 @@ const SHARPEST: f32 = 100.0;
 #[derive(Debug, Clone)]
 pub struct BestViewEstimator(ViewNetwork);
 
-/// A distribution over directions to the best view, in the camera's frame.
+/// A distribution over directions to the best view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BestViewEstimate {
     /// Natural parameter of each component: mean direction times concentration.
@@ -87,6 +89,11 @@ impl BestViewEstimate {
             *log = weight - sum - log_normaliser(kappa.min(SHARPEST));
         }
         estimate
+    }
+
+    /// Returns the same distribution in the frame of the rig whose camera is at `pose`.
+    pub fn in_rig_frame(self, pose: &ViewPose) -> Self {
+        Self { etas: self.etas.map(|eta| in_rig_frame(pose, eta)), ..self }
     }
 
     /// Returns the density in a direction of length 1, per steradian.

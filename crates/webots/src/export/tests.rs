@@ -123,5 +123,5 @@ fn textures_are_saved_beside_the_world() {
     }
     std::fs::remove_dir_all(&folder).unwrap();
     let error = files.save("/proc/no/object.wbt").unwrap_err();
-    assert_eq!(error.kind(), ErrorKind::Io, "{error}");
+    assert_eq!(error.kind(), ErrorKind::NotFound, "{error}");
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::ArgMatches;
 use opendr::active::{
-    ActiveContainer, AnyRecogniser, EnvironmentScene, FIRST_EVALUATION_SEED, ViewRecogniser, calibrated,
-    compare, episode_strip,
+    ActiveContainer, AnyRecogniser, EnvironmentScene, EpisodeStrip, FIRST_EVALUATION_SEED, ViewRecogniser,
+    calibrated, compare,
 };
 use opendr::learner::Entry;
 use opendr::{JsonFormat, Progress as _, Result, Unit};
@@ -53,10 +53,10 @@ pub fn run(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: &Progre
     let comparison = comparison?;
     if let Some(folder) = matches.get_one::<PathBuf>("out") {
         std::fs::create_dir_all(folder)?;
-        let strip = episode_strip(scene()?, &container.model, first_seed, STRIP_ROWS)?;
-        opendr::vision::save(&strip, folder.join("episodes.png"))?;
+        let strip = EpisodeStrip::run(scene()?, &container.model, first_seed, STRIP_ROWS)?;
+        ["episodes.png", "episodes.gif"].into_iter().try_for_each(|name| strip.save(&folder.join(name)))?;
         report_file::write(COMPARISON, &comparison, folder)?;
-        bar.note(&format!("written: episodes.png and report.json in {}", folder.display()));
+        bar.note(&format!("written: episodes.png, episodes.gif and report.json in {}", folder.display()));
     }
     if matches.get_flag("json") {
         stdout::print_json(COMPARISON, &comparison)?;

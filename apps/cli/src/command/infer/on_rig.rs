@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::active::rig::RigOptions;
-use opendr::active::{Active, ActiveContainer, Outcome as Run, strip_of_views};
+use opendr::active::{Active, ActiveContainer, EpisodeStrip, Outcome as Run};
 use opendr::learner::{AnyLearner, Entry};
 use opendr::model::Model;
 use opendr::params::ParamMap;
@@ -58,7 +58,7 @@ pub fn run(
     let mut active = Active::of_learner(learner.as_ref(), entry, policy)?;
     let run = active.run(rig_options(rig, matches)?.open(rig)?.as_mut())?;
     if let Some(path) = matches.get_one::<PathBuf>("out") {
-        opendr::vision::save(&strip_of_views(&run)?, path)?;
+        EpisodeStrip::of(&run)?.save(path)?;
     }
     if matches.contains_id("json") {
         stdout::print_json(EPISODE, &run)?;
