@@ -8,9 +8,7 @@ use opendr_engine::target::{BoundingBox3DList, TrackingAnnotationList};
 use opendr_executor::{Data, Executor, Kind, Tensor};
 use opendr_kernels::Compute;
 use opendr_metrics::coco::files::{CocoFiles, CocoKind};
-use opendr_odometry::{
-    Alignment, KITTI_LENGTHS, Trajectory, absolute_errors, kitti_drift, relative_errors,
-};
+use opendr_odometry::{Alignment, KITTI_LENGTHS, Trajectory, absolute_errors, kitti_drift, relative_errors};
 
 /// A parser of bytes from outside: it may refuse them, it may not panic.
 pub type Parser = fn(&[u8]);

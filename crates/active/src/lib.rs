@@ -85,6 +85,8 @@ pub use scene::ActiveScene;
 pub use session::{ActiveSession, Decision};
 pub use stop::{StopReason, StopRule};
 pub use training::{ActiveTraining, calibrated, train_active};
-pub use view_classifier::{ViewClassifier, ViewClassifierConfig, ViewTraining, fit_view_networks};
+pub use view_classifier::{
+    ViewClassifier, ViewClassifierConfig, ViewTraining, fit_view_classifier, fit_view_networks,
+};
 pub use view_loop::ViewLoop;
 pub use view_network::{FreshViews, LabelledViews, ViewNetworkConfig, ViewSource};

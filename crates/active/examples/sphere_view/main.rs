@@ -10,7 +10,8 @@ use std::time::Instant;
 
 use opendr_active::{
     ActiveFitParams, ActiveTraining, BestViewEstimator, Comparison, EnvironmentRig, EnvironmentScene,
-    EpisodeStrip, FreshViews, ViewClassifier, calibrated, compare, fit_view_networks, train_active,
+    EpisodeStrip, FreshViews, ViewClassifier, calibrated, compare, fit_view_classifier, fit_view_networks,
+    train_active,
 };
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::params::ParamMap;
@@ -36,20 +37,20 @@ fn main() -> Result<()> {
     };
     let [known, others] = [source(GALLERIES[0])?, source(GALLERIES[1])?];
     let params = ActiveFitParams { view_episodes: options.view_episodes, ..ActiveFitParams::default() };
-    let other = ActiveFitParams { kernels: 10, hidden: 64, seed: 9, ..params.clone() };
+    let other = ActiveFitParams { kernels: 12, hidden: 64, epochs: 6, seed: 9, ..params.clone() };
     let (recogniser, best_view) = fit_networks(&known, &params)?;
     // Persons of another gallery are other classes, whose recogniser is trained on their views; instances of objects and poses
     // are recognised by the same recogniser.
     let enrolled = match options.subject {
-        opendr_simulation::sphere_view::Subject::Face => fit_networks(&others, &params)?.0,
+        opendr_simulation::sphere_view::Subject::Face => fit_recogniser(&others, &params)?,
         _ => recogniser.clone(),
     };
-    let swapped = fit_networks(&known, &other)?.0;
+    let swapped = fit_recogniser(&known, &other)?;
     for seed in 0..options.seeds {
         let training = ActiveTraining { timesteps: options.timesteps, seed, ..ActiveTraining::default() };
         let part = Instant::now();
         let scene = || EnvironmentScene::new(&known, recogniser.clone());
-        let model = train_active(&scene, best_view.clone(), &training, &mut |_, _| false)?;
+        let model = train_active(&scene, Some(best_view.clone()), &training, &mut |_, _| false)?;
         eprintln!("seed {seed}: {:?} after {:.0} s", model.fusion, part.elapsed().as_secs_f64());
         let run = |name: &str, comparison: Comparison| println!("seed {seed}, {name}\n\n{comparison}");
         let evaluate =
@@ -68,22 +69,30 @@ fn main() -> Result<()> {
     Ok(())
 }
 
+/// Views that train the networks of a source.
+fn views(source: &dyn EnvironmentSource, params: &ActiveFitParams) -> Result<FreshViews> {
+    let rigs = (0..params.num_workers).map(|_| EnvironmentRig::new(source.make()?));
+    let rigs = rigs.collect::<Result<Vec<_>>>()?;
+    Ok(FreshViews::new(rigs, VIEW_SEEDS * (1 + params.seed), params.view_episodes))
+}
+
+fn fit_recogniser(source: &dyn EnvironmentSource, params: &ActiveFitParams) -> Result<ViewClassifier> {
+    let begun = Instant::now();
+    let compute = Compute::with_threads(params.num_workers as usize);
+    fit_view_classifier(&mut views(source, params)?, &params.view_training(), &compute, &mut |epoch, loss| {
+        eprintln!("recogniser, epoch {epoch}: loss {loss:.3}, {:.0} s", begun.elapsed().as_secs_f64());
+        false
+    })
+}
+
 fn fit_networks(
     source: &dyn EnvironmentSource,
     params: &ActiveFitParams,
-) -> Result<(ViewClassifier, Option<BestViewEstimator>)> {
+) -> Result<(ViewClassifier, BestViewEstimator)> {
     let begun = Instant::now();
-    let rigs = (0..params.num_workers).map(|_| EnvironmentRig::new(source.make()?));
-    let rigs = rigs.collect::<Result<Vec<_>>>()?;
-    let mut views = FreshViews::new(rigs, VIEW_SEEDS * (1 + params.seed), params.view_episodes);
     let compute = Compute::with_threads(params.num_workers as usize);
-    let networks =
-        fit_view_networks(&mut views, &params.view_training(), &compute, &mut |epoch, loss, best_view| {
-            eprintln!(
-                "epoch {epoch}: loss {loss:.3}, of the best view {best_view:.3?}, {:.0} s",
-                begun.elapsed().as_secs_f64()
-            );
-            false
-        })?;
-    Ok(networks)
+    fit_view_networks(&mut views(source, params)?, &params.view_training(), &compute, &mut |epoch, losses| {
+        eprintln!("networks, epoch {epoch}: losses {losses:.3?}, {:.0} s", begun.elapsed().as_secs_f64());
+        false
+    })
 }

@@ -4,8 +4,11 @@ use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Compute;
 
 use super::estimator::{BestViewEstimate, BestViewEstimator, COMPONENTS, NUMBERS, length, log_sum};
-use crate::view_classifier::ViewTraining;
 use crate::view_network::{LabelledViews, ViewLoss, ViewNetworkConfig, ViewSource, ViewTrainee, fit_views};
+
+/// Kernels of the convolutions, and neurons of the hidden layer.
+const KERNELS: [usize; 3] = [16, 32, 48];
+const HIDDEN: usize = 128;
 
 /// Negative log-likelihood of the true direction.
 pub(crate) struct BestViewLoss;
@@ -51,13 +54,20 @@ fn mean_length(kappa: f32) -> f32 {
 }
 
 impl BestViewEstimator {
-    pub(crate) fn trainee(
-        views: &LabelledViews,
-        training: &ViewTraining,
-    ) -> Result<ViewTrainee<BestViewLoss>> {
+    /// Creates an estimator for views, with random parameters.
+    ///
+    /// # Errors
+    /// `InvalidInput` for views without the direction to the best one.
+    pub(crate) fn trainee(views: &LabelledViews, seed: u64) -> Result<ViewTrainee<BestViewLoss>> {
+        if !views.has_best() {
+            return Err(Error::invalid_input(
+                "views without the direction to the best one; use an environment that reports best_azimuth and best_elevation",
+            ));
+        }
         let outputs = NUMBERS * COMPONENTS;
-        let config = ViewNetworkConfig { side: views.side, outputs, ..training.config.network_config() };
-        ViewTrainee::new(config, BestViewLoss, 0, &mut Random::from_key([training.seed, 0xbe57]))
+        let config =
+            ViewNetworkConfig { side: views.side, kernels: KERNELS.to_vec(), hidden: HIDDEN, outputs };
+        ViewTrainee::new(config, BestViewLoss, 0, &mut Random::from_key([seed, 0xbe57]))
     }
 
     pub(crate) fn trained(trainee: ViewTrainee<BestViewLoss>) -> Self {
@@ -65,25 +75,19 @@ impl BestViewEstimator {
     }
 }
 
-/// Trains by maximum likelihood. `observer` receives the number of the epoch and its mean loss; it returns whether to stop.
+/// Trains by maximum likelihood for a number of epochs, from a seed. `observer` receives the number of the epoch and its mean loss; it returns whether to stop.
 ///
 /// # Errors
 /// Returns `InvalidInput` for views without the direction to the best one and for fewer than a batch of 64, `Internal` if the training
 /// diverges.
 pub fn fit_best_view(
     source: &mut dyn ViewSource,
-    training: &ViewTraining,
+    (epochs, seed): (usize, u64),
     compute: &Compute,
     observer: &mut dyn FnMut(usize, f32) -> bool,
 ) -> Result<BestViewEstimator> {
-    let views = source.views(0)?;
-    if !views.has_best() {
-        return Err(Error::invalid_input(
-            "views without the direction to the best one; use an environment that reports best_azimuth and best_elevation",
-        ));
-    }
-    let mut trainee = BestViewEstimator::trainee(views, training)?;
-    fit_views(source, [&mut trainee], training.run(), compute, &mut |epoch, [loss]| observer(epoch, loss))?;
+    let mut trainee = BestViewEstimator::trainee(source.views(0)?, seed)?;
+    fit_views(source, [&mut trainee], (epochs, seed), compute, &mut |epoch, [loss]| observer(epoch, loss))?;
     Ok(BestViewEstimator::trained(trainee))
 }
 

@@ -15,7 +15,7 @@ use crate::environment_rig::EnvironmentRig;
 use crate::environment_scene::EnvironmentScene;
 use crate::model::ActiveModel;
 use crate::training::{calibrated, train_active};
-use crate::view_classifier::{ViewClassifier, fit_view_networks};
+use crate::view_classifier::{ViewClassifier, fit_view_classifier, fit_view_networks};
 use crate::view_network::{FreshViews, LabelledViews, ViewSource};
 
 /// First seed of the episodes that report the result of a training; no calibration uses them.
@@ -98,37 +98,45 @@ fn fit_networks(
             return Err(Error::invalid_input("an unopened data set; open it by its format first"));
         }
     };
-    let source: &mut dyn ViewSource = match &mut given {
-        Some(views) => views,
-        None => &mut rendered,
-    };
     let compute = Compute::with_threads(params.num_workers as usize);
     let training = params.view_training();
-    job.progress.begin("training the recogniser", Some(u64::from(params.epochs)), Unit::Items);
-    let networks = fit_view_networks(source, &training, &compute, &mut |_, loss, best_view| {
+    let epochs = Some(u64::from(params.epochs));
+    let renders = params.view_episodes > 0 && rendered.views(0)?.has_best();
+    let mut recognised = |loss: f32| {
         job.progress.advance(1);
         statistics.set("recogniser_loss", f64::from(loss));
-        best_view.into_iter().for_each(|loss| statistics.set("best_view_loss", f64::from(loss)));
+        job.progress.stopped()
+    };
+    job.progress.begin("training the recogniser", epochs, Unit::Items);
+    let trained = match &mut given {
+        Some(views) => fit_view_classifier(views, &training, &compute, &mut |_, loss| recognised(loss))
+            .map(|only| (only, None)),
+        None if renders => {
+            let mut best = 0.0;
+            let both = fit_view_networks(&mut rendered, &training, &compute, &mut |_, [loss, best_view]| {
+                best = best_view;
+                recognised(loss)
+            });
+            statistics.set("best_view_loss", f64::from(best));
+            both.map(|(recogniser, best_view)| (recogniser, Some(best_view)))
+        }
+        None => fit_view_classifier(&mut rendered, &training, &compute, &mut |_, loss| recognised(loss))
+            .map(|only| (only, None)),
+    };
+    job.progress.end();
+    let (recogniser, best_view) = trained?;
+    if best_view.is_some() || !renders || job.progress.stopped() {
+        return Ok((recogniser, best_view));
+    }
+    job.progress.begin("training the estimator of the best view", epochs, Unit::Items);
+    let run = (training.epochs, training.seed);
+    let best_view = fit_best_view(&mut rendered, run, &compute, &mut |_, loss| {
+        job.progress.advance(1);
+        statistics.set("best_view_loss", f64::from(loss));
         job.progress.stopped()
     });
     job.progress.end();
-    let (recogniser, mut best_view) = networks?;
-    let states_best = given.is_some() && params.view_episodes > 0 && rendered.views(0)?.has_best();
-    if states_best && !job.progress.stopped() {
-        job.progress.begin(
-            "training the estimator of the best view",
-            Some(u64::from(params.epochs)),
-            Unit::Items,
-        );
-        let trained = fit_best_view(&mut rendered, &training, &compute, &mut |_, loss| {
-            job.progress.advance(1);
-            statistics.set("best_view_loss", f64::from(loss));
-            job.progress.stopped()
-        });
-        job.progress.end();
-        best_view = Some(trained?);
-    }
-    Ok((recogniser, best_view))
+    Ok((recogniser, Some(best_view?)))
 }
 
 /// Trains the camera policy.

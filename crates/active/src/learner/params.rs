@@ -27,17 +27,17 @@ pub struct ActiveFitParams {
     /// only calibrates the belief.
     #[param(default = 400_000, range = 0..=1_000_000_000, alias = "iters")]
     pub total_timesteps: u64,
-    /// Number of episodes in each epoch whose views train the estimator of the best view and, if no data set is given, the recogniser; 0
+    /// Number of episodes in each pair of epochs whose views train the estimator of the best view and, if no data set is given, the recogniser; 0
     /// keeps those of the base model.
     #[param(default = 12_000, range = 0..=10_000_000)]
     pub view_episodes: u64,
     /// Number of epochs of recogniser and estimator.
-    #[param(default = 6, range = 1..=1000)]
+    #[param(default = 10, range = 1..=1000)]
     pub epochs: u32,
-    /// Kernels of the first convolution of recogniser and estimator; the second has twice, the third three times as many.
-    #[param(default = 16, range = 1..=512)]
+    /// Kernels of the first convolution of the recogniser; the second has twice, the third three times as many.
+    #[param(default = 24, range = 1..=512)]
     pub kernels: u32,
-    /// Neurons of their hidden layers.
+    /// Neurons of its hidden layer.
     #[param(default = 128, range = 1..=4096)]
     pub hidden: u32,
     /// Number of environments.

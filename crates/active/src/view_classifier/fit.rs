@@ -25,46 +25,64 @@ impl ViewTraining {
     }
 }
 
-/// Trains a classifier by cross-entropy over the classes and, where the views have the direction to the best one, an estimator of it.
-/// `observer` receives the number of the epoch and the mean losses of both; it returns whether to stop.
+/// Trains a classifier by cross-entropy over the classes. `observer` receives the number of the epoch and its mean loss; it returns
+/// whether to stop.
 ///
 /// # Errors
 /// Returns `InvalidInput` for fewer views than a batch of 64, `Internal` if the training diverges, errors of the source.
+pub fn fit_view_classifier(
+    source: &mut dyn ViewSource,
+    training: &ViewTraining,
+    compute: &Compute,
+    observer: &mut dyn FnMut(usize, f32) -> bool,
+) -> Result<ViewClassifier> {
+    let (mut trainee, config) = ViewClassifier::trainee(source.views(0)?, training)?;
+    fit_views(source, [&mut trainee], training.run(), compute, &mut |epoch, [loss]| observer(epoch, loss))?;
+    Ok(ViewClassifier::trained(trainee, config))
+}
+
+/// Trains a classifier and an estimator of the best view on the same views. `observer` receives the number of the epoch and the mean
+/// loss of each; it returns whether to stop.
+///
+/// # Errors
+/// As [`fit_view_classifier`] and [`fit_best_view`](crate::fit_best_view).
 pub fn fit_view_networks(
     source: &mut dyn ViewSource,
     training: &ViewTraining,
     compute: &Compute,
-    observer: &mut dyn FnMut(usize, f32, Option<f32>) -> bool,
-) -> Result<(ViewClassifier, Option<BestViewEstimator>)> {
+    observer: &mut dyn FnMut(usize, [f32; 2]) -> bool,
+) -> Result<(ViewClassifier, BestViewEstimator)> {
     let views = source.views(0)?;
-    let config = ViewClassifierConfig { side: views.side, classes: views.classes, ..training.config.clone() };
-    config.check()?;
-    let (classes, dimension) = (config.classes, config.dimension);
-    let loss = ClassLoss::new(classes, dimension);
-    let mut random = Random::from_key([training.seed, 0xe3b]);
-    let mut trainee = ViewTrainee::new(config.network_config(), loss, classes * dimension, &mut random)?;
-    let best = views.has_best().then(|| BestViewEstimator::trainee(views, training));
-    let best = match best.transpose()? {
-        None => {
-            fit_views(source, [&mut trainee], training.run(), compute, &mut |epoch, [loss]| {
-                observer(epoch, loss, None)
-            })?;
-            None
-        }
-        Some(mut best) => {
-            let trainees: [&mut dyn Trainee; 2] = [&mut trainee, &mut best];
-            fit_views(source, trainees, training.run(), compute, &mut |epoch, [loss, best]| {
-                observer(epoch, loss, Some(best))
-            })?;
-            Some(BestViewEstimator::trained(best))
-        }
-    };
-    let network = trainee.into_network(|directions| {
-        directions.chunks_exact_mut(dimension).for_each(|direction| {
-            normalise(direction);
+    let (mut trainee, config) = ViewClassifier::trainee(views, training)?;
+    let mut best = BestViewEstimator::trainee(views, training.seed)?;
+    let trainees: [&mut dyn Trainee; 2] = [&mut trainee, &mut best];
+    fit_views(source, trainees, training.run(), compute, observer)?;
+    Ok((ViewClassifier::trained(trainee, config), BestViewEstimator::trained(best)))
+}
+
+impl ViewClassifier {
+    fn trainee(
+        views: &LabelledViews,
+        training: &ViewTraining,
+    ) -> Result<(ViewTrainee<ClassLoss>, ViewClassifierConfig)> {
+        let config =
+            ViewClassifierConfig { side: views.side, classes: views.classes, ..training.config.clone() };
+        config.check()?;
+        let (classes, dimension) = (config.classes, config.dimension);
+        let loss = ClassLoss::new(classes, dimension);
+        let mut random = Random::from_key([training.seed, 0xe3b]);
+        let trainee = ViewTrainee::new(config.network_config(), loss, classes * dimension, &mut random)?;
+        Ok((trainee, config))
+    }
+
+    fn trained(trainee: ViewTrainee<ClassLoss>, config: ViewClassifierConfig) -> Self {
+        let network = trainee.into_network(|directions| {
+            directions.chunks_exact_mut(config.dimension).for_each(|direction| {
+                normalise(direction);
+            });
         });
-    });
-    Ok((ViewClassifier { config, network }, best))
+        Self { config, network }
+    }
 }
 
 /// Cross-entropy over the classes, whose directions are its own parameters.

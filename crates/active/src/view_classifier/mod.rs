@@ -6,7 +6,7 @@ use opendr_engine::data::Image;
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-pub use fit::{ViewTraining, fit_view_networks};
+pub use fit::{ViewTraining, fit_view_classifier, fit_view_networks};
 
 use crate::recogniser::ViewRecogniser;
 use crate::view_network::{ViewNetwork, ViewNetworkConfig};

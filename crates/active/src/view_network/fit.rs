@@ -26,17 +26,17 @@ impl ViewSource for LabelledViews {
     }
 }
 
-/// Views of environments, others in each epoch.
+/// Views of environments, others in every second epoch.
 pub struct FreshViews {
     rigs: Vec<EnvironmentRig>,
     first: u64,
     episodes: u64,
-    /// Number of the epoch and its views.
+    /// Number of the pair of epochs and its views.
     collected: Option<(usize, LabelledViews)>,
 }
 
 impl FreshViews {
-    /// Creates a source of the views of `episodes` episodes an epoch, one thread per environment. Seeds start at `first`.
+    /// Creates a source of the views of `episodes` episodes at a time, one thread per environment. Seeds start at `first`.
     pub fn new(rigs: Vec<EnvironmentRig>, first: u64, episodes: u64) -> Self {
         Self { rigs, first, episodes, collected: None }
     }
@@ -45,11 +45,12 @@ impl FreshViews {
 impl ViewSource for FreshViews {
     fn views(&mut self, epoch: usize) -> Result<&LabelledViews> {
         let Self { rigs, first, episodes, collected } = self;
+        let pair = epoch / 2;
         let views = match collected.take() {
-            Some((of, views)) if of == epoch => views,
-            _ => LabelledViews::collect(rigs, *first + epoch as u64 * *episodes, *episodes)?,
+            Some((of, views)) if of == pair => views,
+            _ => LabelledViews::collect(rigs, *first + pair as u64 * *episodes, *episodes)?,
         };
-        Ok(&collected.insert((epoch, views)).1)
+        Ok(&collected.insert((pair, views)).1)
     }
 }
 

@@ -17,7 +17,7 @@ pub fn views(episodes: u64) -> FreshViews {
     FreshViews::new(vec![EnvironmentRig::new(source().make().unwrap()).unwrap()], 0, episodes)
 }
 
-pub fn training(epochs: usize) -> ViewTraining {
+fn training(epochs: usize) -> ViewTraining {
     let config = ViewClassifierConfig { side: 0, kernels: vec![8, 8], hidden: 16, dimension: 8, classes: 0 };
     ViewTraining { config, epochs, seed: 1 }
 }
@@ -25,11 +25,11 @@ pub fn training(epochs: usize) -> ViewTraining {
 pub fn small_networks() -> (ViewClassifier, BestViewEstimator) {
     let mut losses = Vec::new();
     let (classifier, best_view) =
-        fit_view_networks(&mut views(40), &training(5), &Compute::single(), &mut |_, loss, best_view| {
-            losses.push([loss, best_view.unwrap()]);
+        fit_view_networks(&mut views(40), &training(5), &Compute::single(), &mut |_, both| {
+            losses.push(both);
             false
         })
         .unwrap();
     assert!(losses[4][0] < losses[0][0] && losses[4][1] < losses[0][1], "{losses:?}");
-    (classifier, best_view.unwrap())
+    (classifier, best_view)
 }
