@@ -67,7 +67,7 @@ impl Active {
     }
 
     /// Moves a rig until the class is certain. `rig` is a name, an image or an object; `options` are those of named rigs. Returns the
-    /// images of the views, and the run as JSON; with `out`, writes the views side by side into this file, for .gif and videos as a film.
+    /// images of the views, and the run as JSON; with `out`, writes the views side by side into this file, for .gif and .mp4 as a video.
     fn run<'py>(
         &self,
         py: Python<'py>,

@@ -23,7 +23,7 @@ const EDGE: usize = 4;
 const GREEN: [u8; 3] = [60, 170, 80];
 const RED: [u8; 3] = [205, 70, 60];
 const GREY: [u8; 3] = [110, 110, 110];
-/// Views per second of a film, and for how many views its end is shown.
+/// Views per second of a video, and for how many views its end is shown.
 const RATE: f64 = 1.5;
 const END: usize = 3;
 
@@ -97,7 +97,7 @@ impl EpisodeStrip {
         self.first_views(usize::MAX)
     }
 
-    /// Saves a film that shows view after view for `.gif`, `.mp4`, `.mov` and `.mkv`, else an image of all views.
+    /// Saves a video that shows view after view for `.gif`, `.mp4`, `.mov` and `.mkv`, else an image of all views.
     ///
     /// # Errors
     /// Returns errors of [`Recording`] and of [`opendr_vision::save`].
@@ -106,12 +106,12 @@ impl EpisodeStrip {
         if !["gif", "mp4", "mov", "mkv"].contains(&extension.to_ascii_lowercase().as_str()) {
             return opendr_vision::save(&self.image()?, path);
         }
-        let mut film = Recording::create(path, RATE)?;
+        let mut video = Recording::create(path, RATE)?;
         let views = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         for shown in 1..views + END {
-            film.write(&self.first_views(shown)?)?;
+            video.write(&self.first_views(shown)?)?;
         }
-        film.finish()
+        video.finish()
     }
 
     /// Draws the first `count` views of each episode.

@@ -187,7 +187,7 @@ class Active:
             env_params: Parameters of the environment.
             seed: Seed of the episode in an environment; 0 by default.
             field_of_view: Horizontal field of view of a large image in rad; 1 by default.
-            out: File to which the views are written side by side; a film for .gif, .mp4, .mov and .mkv.
+            out: File to which the views are written side by side; a video for .gif, .mp4, .mov and .mkv.
 
         Returns:
             The run.

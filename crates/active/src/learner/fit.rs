@@ -101,13 +101,14 @@ fn fit_networks(
     let compute = Compute::with_threads(params.num_workers as usize);
     let training = params.view_training();
     let epochs = Some(u64::from(params.epochs));
-    let renders = params.view_episodes > 0 && rendered.views(0)?.has_best();
     let mut recognised = |loss: f32| {
         job.progress.advance(1);
         statistics.set("recogniser_loss", f64::from(loss));
         job.progress.stopped()
     };
     job.progress.begin("training the recogniser", epochs, Unit::Items);
+    let renders =
+        params.view_episodes > 0 && rendered.views(0).inspect_err(|_| job.progress.end())?.has_best();
     let trained = match &mut given {
         Some(views) => fit_view_classifier(views, &training, &compute, &mut |_, loss| recognised(loss))
             .map(|only| (only, None)),

@@ -37,12 +37,13 @@ class ActiveFaceRecognitionLearner(NativeLearnerActive):
     Parameters of ``fit``, for one call or, given here, for all of them:
         total_timesteps: Number of motions in all environments together for training the camera policy; 0 keeps
             that of the base model and only calibrates the belief. (default 400000; 0 to 1e+09; in OpenDR iters)
-        view_episodes: Number of episodes whose views train the recogniser, if no data set is given; 0 keeps the
-            recogniser of the base model. (default 12000; 0 to 1e+07)
-        epochs: Number of epochs of the recogniser. (default 8; 1 to 1000)
-        kernels: Kernels of the first convolution of the recogniser; the second has twice as many. (default 24; 1
-            to 512)
-        hidden: Neurons of the recogniser's hidden layer. (default 128; 1 to 4096)
+        view_episodes: Number of episodes in each pair of epochs whose views train the estimator of the best view
+            and, if no data set is given, the recogniser; 0 keeps those of the base model. (default 12000; 0 to
+            1e+07)
+        epochs: Number of epochs of recogniser and estimator. (default 10; 1 to 1000)
+        kernels: Kernels of the first convolution of the recogniser; the second has twice, the third three times
+            as many. (default 24; 1 to 512)
+        hidden: Neurons of its hidden layer. (default 128; 1 to 4096)
         n_envs: Number of environments. (default 16; 1 to 1024)
         num_workers: Number of threads. (default 2; 1 to 256)
         calibration_episodes: Number of episodes for each calibration of the belief. (default 1000; 50 to 1e+06)
@@ -89,12 +90,13 @@ class ActiveObjectRecognitionLearner(NativeLearnerActive):
     Parameters of ``fit``, for one call or, given here, for all of them:
         total_timesteps: Number of motions in all environments together for training the camera policy; 0 keeps
             that of the base model and only calibrates the belief. (default 400000; 0 to 1e+09; in OpenDR iters)
-        view_episodes: Number of episodes whose views train the recogniser, if no data set is given; 0 keeps the
-            recogniser of the base model. (default 12000; 0 to 1e+07)
-        epochs: Number of epochs of the recogniser. (default 8; 1 to 1000)
-        kernels: Kernels of the first convolution of the recogniser; the second has twice as many. (default 24; 1
-            to 512)
-        hidden: Neurons of the recogniser's hidden layer. (default 128; 1 to 4096)
+        view_episodes: Number of episodes in each pair of epochs whose views train the estimator of the best view
+            and, if no data set is given, the recogniser; 0 keeps those of the base model. (default 12000; 0 to
+            1e+07)
+        epochs: Number of epochs of recogniser and estimator. (default 10; 1 to 1000)
+        kernels: Kernels of the first convolution of the recogniser; the second has twice, the third three times
+            as many. (default 24; 1 to 512)
+        hidden: Neurons of its hidden layer. (default 128; 1 to 4096)
         n_envs: Number of environments. (default 16; 1 to 1024)
         num_workers: Number of threads. (default 2; 1 to 256)
         calibration_episodes: Number of episodes for each calibration of the belief. (default 1000; 50 to 1e+06)
@@ -131,12 +133,13 @@ class ActivePoseRecognitionLearner(NativeLearnerActive):
     Parameters of ``fit``, for one call or, given here, for all of them:
         total_timesteps: Number of motions in all environments together for training the camera policy; 0 keeps
             that of the base model and only calibrates the belief. (default 400000; 0 to 1e+09; in OpenDR iters)
-        view_episodes: Number of episodes whose views train the recogniser, if no data set is given; 0 keeps the
-            recogniser of the base model. (default 12000; 0 to 1e+07)
-        epochs: Number of epochs of the recogniser. (default 8; 1 to 1000)
-        kernels: Kernels of the first convolution of the recogniser; the second has twice as many. (default 24; 1
-            to 512)
-        hidden: Neurons of the recogniser's hidden layer. (default 128; 1 to 4096)
+        view_episodes: Number of episodes in each pair of epochs whose views train the estimator of the best view
+            and, if no data set is given, the recogniser; 0 keeps those of the base model. (default 12000; 0 to
+            1e+07)
+        epochs: Number of epochs of recogniser and estimator. (default 10; 1 to 1000)
+        kernels: Kernels of the first convolution of the recogniser; the second has twice, the third three times
+            as many. (default 24; 1 to 512)
+        hidden: Neurons of its hidden layer. (default 128; 1 to 4096)
         n_envs: Number of environments. (default 16; 1 to 1024)
         num_workers: Number of threads. (default 2; 1 to 256)
         calibration_episodes: Number of episodes for each calibration of the belief. (default 1000; 50 to 1e+06)
