@@ -230,7 +230,7 @@ fn property(rig: &mut dyn ViewRig, case: &Case) -> std::result::Result<(), TestC
     let mut camera_policy = camera_policy(case.camera_policy, case.weights, axes.len());
     let mut belief = Belief::new(CLASSES, Fusion::default()).unwrap();
     let best_view =
-        (case.seed % 2 == 0).then(|| Weights { bias: None, scale: 1.0, ..case.weights }.best_view());
+        case.seed.is_multiple_of(2).then(|| Weights { bias: None, scale: 1.0, ..case.weights }.best_view());
     let mut observer = Observer::new(&axes, BUDGET, best_view);
     observer.reset(rig.pose());
     camera_policy.begin(case.seed);
@@ -312,7 +312,7 @@ fn every_run_moves_the_rig_by_its_axes() {
         let stop = StopRule { moves: 4, ..StopRule::default() };
         let model = ActiveModel {
             policy: weights.policy(axes.len()),
-            best_view: (seed % 2 == 0).then(|| gain.best_view()),
+            best_view: seed.is_multiple_of(2).then(|| gain.best_view()),
             gain: gain.gain(axes.len()),
             fusion: Fusion::default(),
             stop,
