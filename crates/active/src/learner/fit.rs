@@ -49,7 +49,11 @@ impl<K: ActiveKind> LearnerActive for ActiveLearner<K> {
         let (recogniser, best_view) = match (&base, dataset.is_none() && fit_params.view_episodes == 0) {
             (Some(base), true) => (base.recogniser.clone(), base.model.best_view.clone()),
             (None, true) => return Err(needs_base("view_episodes")),
-            (_, false) => fit_networks(fit_params, dataset, env, job, &mut statistics)?,
+            (base, false) => {
+                let (recogniser, best_view) = fit_networks(fit_params, dataset, env, job, &mut statistics)?;
+                let kept = base.as_ref().and_then(|base| base.model.best_view.clone());
+                (recogniser, best_view.or(kept))
+            }
         };
         if job.progress.stopped() {
             return Ok(statistics);
@@ -107,8 +111,10 @@ fn fit_networks(
         job.progress.stopped()
     };
     job.progress.begin("training the recogniser", epochs, Unit::Items);
-    let renders =
-        params.view_episodes > 0 && rendered.views(0).inspect_err(|_| job.progress.end())?.has_best();
+    // A camera policy that is kept goes on observing the estimator that it was trained with.
+    let renders = params.total_timesteps > 0
+        && params.view_episodes > 0
+        && rendered.views(0).inspect_err(|_| job.progress.end())?.has_best();
     let trained = match &mut given {
         Some(views) => fit_view_classifier(views, &training, &compute, &mut |_, loss| recognised(loss))
             .map(|only| (only, None)),

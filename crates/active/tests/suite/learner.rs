@@ -45,6 +45,17 @@ fn trained(folder: &std::path::Path) -> Model {
     let best_view = |container: &ActiveContainer| container.model.best_view.as_ref().unwrap().to_bytes();
     assert_eq!(best_view(&again), best_view(&before));
     assert!(statistics.get("best_view_loss").is_some(), "{statistics}");
+    // A kept camera policy keeps its estimator beside a new recogniser.
+    let other = ActiveFitParams { total_timesteps: 0, seed: 4, ..fit_params };
+    let folder = folder.join("other");
+    let job = FitJob::new(&folder);
+    let statistics =
+        ActivePoseRecognition::fit(Some(&model), &ActiveParams::default(), &other, None, &source(), &job)
+            .unwrap();
+    assert!(statistics.get("best_view_loss").is_none(), "{statistics}");
+    let other = ActiveContainer::read(&Model::open(job.model()).unwrap()).unwrap();
+    assert_eq!(best_view(&other), best_view(&before));
+    assert_ne!(other.recogniser.to_bytes(), before.recogniser.to_bytes());
     model
 }
 
