@@ -5,8 +5,6 @@ use opendr_engine::Value;
 use opendr_engine::data::Image;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::{BoundingBox3DList, TrackingAnnotationList};
-use opendr_executor::{Data, Executor, Kind, Tensor};
-use opendr_kernels::Compute;
 use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 use opendr_odometry::{Alignment, KITTI_LENGTHS, Trajectory, absolute_errors, kitti_drift, relative_errors};
 
@@ -44,35 +42,9 @@ pub const PARSERS: [(&str, Parser); 31] = [
     ("bag1", recording),
     ("mcap", recording),
     ("parquet", parquet),
-    ("onnx", onnx),
+    ("onnx", opendr_executor::fuzzing::model),
     ("trajectory_text", trajectory_text),
 ];
-
-/// A model for the built-in runtime. Where it opens, it runs on ones, with 2 for each open dimension.
-fn onnx(bytes: &[u8]) {
-    const LARGEST: usize = 1 << 16;
-    let Ok(mut executor) = Executor::open(bytes, Compute::single()) else { return };
-    let shapes: Vec<Vec<usize>> =
-        executor.input_shapes().map(|dims| dims.iter().map(|dim| dim.unwrap_or(2)).collect()).collect();
-    let count = |shape: &Vec<usize>| shape.iter().try_fold(1, |count: usize, dim| count.checked_mul(*dim));
-    let counts: Option<Vec<usize>> = shapes.iter().map(count).collect();
-    let Some(counts) = counts.filter(|counts| counts.iter().all(|count| *count <= LARGEST)) else { return };
-    let (floats, longs, ints) = (vec![1.0; LARGEST], vec![1; LARGEST], vec![1; LARGEST]);
-    let (bytes, signed) = (vec![1; LARGEST], vec![1; LARGEST]);
-    let kinds: Vec<Kind> = executor.inputs().map(|(_, kind)| kind).collect();
-    let inputs = shapes.iter().zip(counts).zip(kinds).map(|((shape, count), kind)| {
-        let data = match kind {
-            Kind::F32 | Kind::F16 => Data::F32(&floats[..count]),
-            Kind::I64 => Data::I64(&longs[..count]),
-            Kind::I32 => Data::I32(&ints[..count]),
-            Kind::U8 => Data::U8(&bytes[..count]),
-            Kind::I8 => Data::I8(&signed[..count]),
-            Kind::Bool => Data::Bool(&bytes[..count]),
-        };
-        Tensor { shape, data }
-    });
-    executor.run(&inputs.collect::<Vec<_>>(), &mut |_| Ok(())).ok();
-}
 
 /// Trajectories in the formats of TUM and KITTI. What was read is written and read again, and compared with itself.
 fn trajectory_text(bytes: &[u8]) {

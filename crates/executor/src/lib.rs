@@ -34,6 +34,7 @@ mod control;
 mod declared;
 mod emit;
 mod executor;
+pub mod fuzzing;
 mod graph;
 mod io;
 mod memory;

@@ -1,7 +1,7 @@
 //! Damaged files: an error or a result, never a panic.
 
 use opendr_engine::Random;
-use opendr_executor::{Data, Executor, Kind, Tensor};
+use opendr_executor::{Data, Executor, Tensor, fuzzing};
 use opendr_kernels::Compute;
 
 use crate::control_flow::{branches, growing, sums};
@@ -36,41 +36,13 @@ fn open_and_run(bytes: &[u8]) {
     let _ = executor.run(&inputs, &mut |_| Ok(()));
 }
 
-/// Opens a model and runs it, where it opens, on ones of the types that it declares.
-fn open_and_run_on_ones(bytes: &[u8]) {
-    let Ok(mut executor) = Executor::open(bytes, Compute::single()) else { return };
-    let shapes: Vec<Vec<usize>> =
-        executor.input_shapes().map(|dims| dims.iter().map(|dim| dim.unwrap_or(2)).collect()).collect();
-    let counts: Vec<usize> = shapes.iter().map(|shape| shape.iter().product()).collect();
-    if counts.iter().any(|&count| count > 1 << 16) {
-        return;
-    }
-    let most = counts.iter().copied().max().unwrap_or(0);
-    let (floats, longs, ints) = (vec![1.0; most], vec![1; most], vec![1; most]);
-    let (bytes, signed) = (vec![1; most], vec![1; most]);
-    let kinds: Vec<Kind> = executor.inputs().map(|(_, kind)| kind).collect();
-    let inputs = shapes.iter().zip(&counts).zip(kinds).map(|((shape, &count), kind)| {
-        let data = match kind {
-            Kind::F32 | Kind::F16 => Data::F32(&floats[..count]),
-            Kind::I64 => Data::I64(&longs[..count]),
-            Kind::I32 => Data::I32(&ints[..count]),
-            Kind::U8 => Data::U8(&bytes[..count]),
-            Kind::I8 => Data::I8(&signed[..count]),
-            Kind::Bool => Data::Bool(&bytes[..count]),
-        };
-        Tensor { shape, data }
-    });
-    let inputs: Vec<Tensor<'_>> = inputs.collect();
-    let _ = executor.run(&inputs, &mut |_| Ok(()));
-}
-
 #[test]
 fn mutations_of_loops_and_branches_end_in_an_error_or_a_result() {
     let mut random = Random::new(12);
     let mut next = |most: usize| (random.uniform(0.0, 1.0) * most as f32) as usize;
     for graph in [sums(), growing(), branches("c", &[]), positive()] {
         let bytes = bytes(graph);
-        open_and_run_on_ones(&bytes);
+        fuzzing::model(&bytes);
         for _ in 0..1500 {
             let mut mutated = bytes.clone();
             for _ in 0..=next(2) {
@@ -78,7 +50,7 @@ fn mutations_of_loops_and_branches_end_in_an_error_or_a_result() {
                 mutated[at] =
                     if next(2) == 0 { next(256) as u8 } else { mutated[at] ^ (1 << next(8).min(7)) };
             }
-            open_and_run_on_ones(&mutated);
+            fuzzing::model(&mutated);
         }
     }
 }
