@@ -140,10 +140,7 @@ impl Belief {
         for (weight, logs) in weights.iter().zip(evidence.chunks_exact(*classes)) {
             probabilities.iter_mut().zip(logs).for_each(|(sum, log)| *sum += weight * log);
         }
-        let highest = probabilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        probabilities.iter_mut().for_each(|log| *log = (*log - highest).exp());
-        let sum: f32 = probabilities.iter().sum();
-        probabilities.iter_mut().for_each(|probability| *probability /= sum);
+        probabilities_of_logs(probabilities);
     }
 
     /// Returns the probability of each class.
@@ -190,6 +187,20 @@ impl Belief {
     pub fn classes(&self) -> usize {
         self.classes
     }
+}
+
+/// Replaces logarithms of probabilities, up to a constant, by the probabilities, whose sum is 1.
+pub(crate) fn probabilities_of_logs(logs: &mut [f32]) {
+    let highest = logs.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    logs.iter_mut().for_each(|log| *log = (*log - highest).exp());
+    let sum: f32 = logs.iter().sum();
+    logs.iter_mut().for_each(|probability| *probability /= sum);
+}
+
+/// Logarithm of the sum of exponentials, without overflow.
+pub(crate) fn log_sum(logs: impl Iterator<Item = f32> + Clone) -> f32 {
+    let highest = logs.clone().fold(f32::NEG_INFINITY, f32::max);
+    highest + logs.map(|log| (log - highest).exp()).sum::<f32>().ln()
 }
 
 /// Entropy in nats of logarithms of probabilities up to a constant, the highest of which is 0.

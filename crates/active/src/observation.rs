@@ -5,13 +5,14 @@ use opendr_engine::rig::{Achieved, ViewAxis, ViewPose};
 use opendr_engine::target::ActionBase as _;
 use opendr_engine::{Error, Result};
 
-use crate::best_view::{BestViewBelief, BestViewEstimator, in_camera_frame};
+use crate::best_view::{BestView, BestViewBelief, BestViewEstimator, in_camera_frame};
 use crate::fusion::Belief;
 
 /// Width and height of the thumbnail in pixels.
 const SIDE: usize = 12;
-/// Length of an observation without the thumbnail.
-const NUMBERS: usize = 27;
+/// Numbers of belief, pose and motion, and of the direction to the best view.
+const BELIEF: usize = 18;
+const DIRECTION: usize = 9;
 
 /// Turns views and beliefs into observations: luminance of 12 x 12 pixels with mean 0, then confidence and uncertainty of the
 /// belief, information of the last and of the best view, the pose, the direction to the best view, the last motion and whether a
@@ -24,13 +25,12 @@ pub struct Observer {
     begin: ViewPose,
     thumbnail: [f32; SIDE * SIDE],
     last: Option<Achieved>,
-    estimator: Option<BestViewEstimator>,
-    best_view: BestViewBelief,
+    best_view: Option<(BestViewEstimator, BestViewBelief)>,
 }
 
 impl Observer {
     /// Length of an observation.
-    pub const LEN: usize = SIDE * SIDE + NUMBERS;
+    pub const LEN: usize = SIDE * SIDE + BELIEF + DIRECTION;
 
     /// Creates an observer of a rig with these axes and a maximum number of motions. Without an estimator of the best view, its numbers
     /// are 0.
@@ -41,8 +41,7 @@ impl Observer {
             begin: ViewPose::default(),
             thumbnail: [0.0; SIDE * SIDE],
             last: None,
-            estimator,
-            best_view: BestViewBelief::default(),
+            best_view: estimator.map(|estimator| (estimator, BestViewBelief::default())),
         }
     }
 
@@ -50,7 +49,9 @@ impl Observer {
     pub fn reset(&mut self, pose: ViewPose) {
         self.begin = pose;
         self.last = None;
-        self.best_view.reset();
+        if let Some((_, belief)) = &mut self.best_view {
+            belief.reset();
+        }
     }
 
     /// Sets the last motion.
@@ -63,8 +64,8 @@ impl Observer {
     /// # Errors
     /// Returns `InvalidInput` for an image that is not of 8 bits, `Internal` for an estimator whose outputs are not finite.
     pub fn add(&mut self, image: &Image, pose: ViewPose) -> Result<()> {
-        if let Some(estimator) = &mut self.estimator {
-            self.best_view.add(pose, &estimator.estimate(image)?);
+        if let Some((estimator, belief)) = &mut self.best_view {
+            belief.add(pose, &estimator.estimate(image)?);
         }
         self.set_thumbnail(image)
     }
@@ -123,12 +124,7 @@ impl Observer {
             stopped = if achieved.is_complete() { 0.0 } else { 1.0 };
         }
         let moves = belief.views().saturating_sub(1) as f32;
-        let to = self.best_view.best();
-        let level = ViewPose { elevation: 0.0, ..*pose };
-        let [[ahead, left, up], mean] = [to.direction, to.mean].map(|part| in_camera_frame(&level, part));
-        let rise = up.clamp(-1.0, 1.0).asin() - pose.elevation as f32;
-        let known = if self.estimator.is_some() { 1.0 } else { 0.0 };
-        let all: [f32; NUMBERS] = [
+        let state: [f32; BELIEF] = [
             belief.best().1,
             belief.uncertainty(),
             belief.last_information(),
@@ -147,16 +143,20 @@ impl Observer {
             last[3],
             stopped,
             if belief.views() > 1 { 1.0 } else { 0.0 },
-            known * to.certainty,
-            known * ahead,
-            known * left,
-            known * up,
-            known * left.atan2(ahead),
-            known * rise,
-            mean[0],
-            mean[1],
-            mean[2],
         ];
-        numbers.copy_from_slice(&all);
+        let (of_belief, of_best_view) = numbers.split_at_mut(BELIEF);
+        of_belief.copy_from_slice(&state);
+        match &self.best_view {
+            Some((_, belief)) => of_best_view.copy_from_slice(&direction_numbers(&belief.best(), pose)),
+            None => of_best_view.fill(0.0),
+        }
     }
+}
+
+/// The direction to the best view relative to the camera at `pose`: certainty, direction and angles, and the mean of all directions.
+fn direction_numbers(to: &BestView, pose: &ViewPose) -> [f32; DIRECTION] {
+    let level = ViewPose { elevation: 0.0, ..*pose };
+    let [[ahead, left, up], mean] = [to.direction, to.mean].map(|part| in_camera_frame(&level, part));
+    let rise = up.clamp(-1.0, 1.0).asin() - pose.elevation as f32;
+    [to.certainty, ahead, left, up, left.atan2(ahead), rise, mean[0], mean[1], mean[2]]
 }

@@ -9,9 +9,8 @@ mod options;
 use std::time::Instant;
 
 use opendr_active::{
-    ActiveFitParams, ActiveTraining, BestViewEstimator, Comparison, EnvironmentRig, EnvironmentScene,
-    EpisodeStrip, FreshViews, ViewClassifier, calibrated, compare, fit_view_classifier, fit_view_networks,
-    train_active,
+    ActiveFitParams, ActiveTraining, BestViewEstimator, Comparison, EnvironmentScene, EpisodeStrip,
+    FreshViews, ViewClassifier, calibrated, compare, fit_view_classifier, fit_view_networks, train_active,
 };
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::params::ParamMap;
@@ -23,8 +22,6 @@ use options::Options;
 
 /// Galleries of the training and of the other subjects.
 const GALLERIES: [i64; 2] = [0, 1];
-/// First seed of the episodes that provide views.
-const VIEW_SEEDS: u64 = 1 << 40;
 
 fn main() -> Result<()> {
     let options = Options::parse()?;
@@ -71,9 +68,7 @@ fn main() -> Result<()> {
 
 /// Views that train the networks of a source.
 fn views(source: &dyn EnvironmentSource, params: &ActiveFitParams) -> Result<FreshViews> {
-    let rigs = (0..params.num_workers).map(|_| EnvironmentRig::new(source.make()?));
-    let rigs = rigs.collect::<Result<Vec<_>>>()?;
-    Ok(FreshViews::new(rigs, VIEW_SEEDS * (1 + params.seed), params.view_episodes))
+    FreshViews::of(source, params.num_workers, params.seed, params.view_episodes)
 }
 
 fn fit_recogniser(source: &dyn EnvironmentSource, params: &ActiveFitParams) -> Result<ViewClassifier> {

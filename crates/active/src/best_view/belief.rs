@@ -3,7 +3,7 @@
 use opendr_engine::rig::ViewPose;
 
 use super::estimator::BestViewEstimate;
-use crate::fusion::Fusion;
+use crate::fusion::{Fusion, probabilities_of_logs};
 
 /// Number of directions.
 const DIRECTIONS: usize = 300;
@@ -82,10 +82,7 @@ impl BestViewBelief {
             let weight = 1.0 / shared.max(1.0);
             probabilities.iter_mut().zip(view).for_each(|(sum, log)| *sum += weight * log);
         }
-        let highest = probabilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        probabilities.iter_mut().for_each(|log| *log = (*log - highest).exp());
-        let sum: f32 = probabilities.iter().sum();
-        probabilities.iter_mut().for_each(|probability| *probability /= sum);
+        probabilities_of_logs(probabilities);
     }
 
     /// Returns the most likely direction; before a view its certainty is that of any.

@@ -5,6 +5,7 @@ use opendr_engine::rig::ViewPose;
 use opendr_engine::{Error, Result};
 
 use super::frame::in_rig_frame;
+use crate::fusion::log_sum;
 use crate::view_network::{ViewNetwork, ViewNetworkConfig};
 
 /// Number of components of an estimate.
@@ -108,12 +109,6 @@ impl BestViewEstimate {
             self.logs[at] + along
         })
     }
-}
-
-/// Logarithm of the sum of exponentials, without overflow.
-pub(super) fn log_sum(logs: impl Iterator<Item = f32> + Clone) -> f32 {
-    let highest = logs.clone().fold(f32::NEG_INFINITY, f32::max);
-    highest + logs.map(|log| (log - highest).exp()).sum::<f32>().ln()
 }
 
 /// Euclidean length.

@@ -3,7 +3,8 @@
 use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Compute;
 
-use super::estimator::{BestViewEstimate, BestViewEstimator, COMPONENTS, NUMBERS, length, log_sum};
+use super::estimator::{BestViewEstimate, BestViewEstimator, COMPONENTS, NUMBERS, length};
+use crate::fusion::log_sum;
 use crate::view_network::{LabelledViews, ViewLoss, ViewNetworkConfig, ViewSource, ViewTrainee, fit_views};
 
 /// Kernels of the convolutions, and neurons of the hidden layer.

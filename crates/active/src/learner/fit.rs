@@ -21,8 +21,6 @@ use crate::view_network::{FreshViews, LabelledViews, ViewSource};
 /// First seed of the episodes that report the result of a training; no calibration uses them.
 const VALIDATION: u64 = 1 << 34;
 const VALIDATION_EPISODES: u64 = 200;
-/// Seeds of the episodes that provide views begin at multiples of this number.
-const VIEW_SEEDS: u64 = 1 << 40;
 
 impl<K: ActiveKind> LearnerActive for ActiveLearner<K> {
     type FitParams = ActiveFitParams;
@@ -91,13 +89,13 @@ fn fit_networks(
     job: &FitJob<'_>,
     statistics: &mut Statistics,
 ) -> Result<(ViewClassifier, Option<BestViewEstimator>)> {
-    let rigs = (0..params.num_workers).map(|_| EnvironmentRig::new(env.make()?));
-    let rigs = rigs.collect::<Result<Vec<_>>>()?;
-    let (side, classes) = rigs.first().map_or((0, 0), |rig| (rig.side(), rig.classes()));
-    let mut rendered = FreshViews::new(rigs, VIEW_SEEDS * (1 + params.seed), params.view_episodes);
+    let mut rendered = FreshViews::of(env, params.num_workers, params.seed, params.view_episodes)?;
     let mut given = match dataset {
         None => None,
-        Some(DatasetRef::Iterator(dataset)) => Some(LabelledViews::from_dataset(dataset, side, classes)?),
+        Some(DatasetRef::Iterator(dataset)) => {
+            let rig = EnvironmentRig::new(env.make()?)?;
+            Some(LabelledViews::from_dataset(dataset, rig.side(), rig.classes())?)
+        }
         Some(DatasetRef::External(_)) => {
             return Err(Error::invalid_input("an unopened data set; open it by its format first"));
         }

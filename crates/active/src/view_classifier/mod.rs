@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 pub use fit::{ViewTraining, fit_view_classifier, fit_view_networks};
 
+use crate::fusion::log_sum;
 use crate::recogniser::ViewRecogniser;
 use crate::view_network::{ViewNetwork, ViewNetworkConfig};
 
@@ -85,9 +86,8 @@ impl ViewRecogniser for ViewClassifier {
         for (logit, direction) in evidence.iter_mut().zip(directions.chunks_exact(self.config.dimension)) {
             *logit = direction.iter().zip(embedding).map(|(a, b)| a * b).sum();
         }
-        let highest = evidence.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-        let sum: f32 = evidence.iter().map(|logit| (logit - highest).exp()).sum();
-        evidence.iter_mut().for_each(|logit| *logit -= highest + sum.ln());
+        let sum = log_sum(evidence.iter().copied());
+        evidence.iter_mut().for_each(|logit| *logit -= sum);
         Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! Training of networks on labelled views.
 
+use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::{Error, Random, Result};
 use opendr_kernels::{Adam, AdamOptions, Compute, Initialisation, Network, Tape, WeightDecay};
 
@@ -35,7 +36,20 @@ pub struct FreshViews {
     collected: Option<(usize, LabelledViews)>,
 }
 
+/// Seeds of the episodes that provide views begin at multiples of this number.
+const VIEW_SEEDS: u64 = 1 << 40;
+
 impl FreshViews {
+    /// Creates a source of the views of `episodes` episodes at a time in `workers` environments. Sources of different seeds have no
+    /// episode in common, and none with calibrations and evaluations.
+    ///
+    /// # Errors
+    /// Returns errors of the environments, and `InvalidInput` for environments of other spaces.
+    pub fn of(source: &dyn EnvironmentSource, workers: u32, seed: u64, episodes: u64) -> Result<Self> {
+        let rigs = (0..workers).map(|_| EnvironmentRig::new(source.make()?));
+        Ok(Self::new(rigs.collect::<Result<_>>()?, VIEW_SEEDS * (1 + seed), episodes))
+    }
+
     /// Creates a source of the views of `episodes` episodes at a time, one thread per environment. Seeds start at `first`.
     pub fn new(rigs: Vec<EnvironmentRig>, first: u64, episodes: u64) -> Self {
         Self { rigs, first, episodes, collected: None }
