@@ -107,7 +107,10 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     }
     if environment_flags::is_active(entry) {
         if cluster::address(matches).is_some() {
-            return Err(Error::unsupported(format!("{} is not evaluated on a cluster; leave out --ray", entry.spec.name)));
+            return Err(Error::unsupported(format!(
+                "{} is not evaluated on a cluster; leave out --ray",
+                entry.spec.name
+            )));
         }
         return active::run(spec, entry, matches, &bar);
     }
