@@ -157,9 +157,9 @@ def test_a_page_displays_what_the_node_processes(ros2):
         node.wait_for_line("is ready as", START)
         answers = ros2.subscribe("/viewed/boxes", BOXES)
         answers.wait_for_publishers()
-        message = ros2.encode(IMAGE, image_fields(noise(64, 48, 1), stamp=(5, 6)))
+        message = ros2.encode(IMAGE, image_fields(64, 48, noise(64, 48), sec=5, nanosec=6))
         answered(ros2, "/camera/viewed", IMAGE, message, answers)
-        with urllib.request.urlopen(f"{url}/api/next?after=0&plain", timeout=20) as answer:
+        with urllib.request.urlopen(f"{url}/api/next?after=0&plain=1", timeout=20) as answer:
             content = answer.read()
     assert answer.status == 200 and b"/camera/viewed" in content and b"inference" in content
 
