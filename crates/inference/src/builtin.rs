@@ -143,3 +143,25 @@ impl ExecutorEngine {
         if has_run { ran } else { ran.map_err(with_advice) }
     }
 }
+
+fn data<'a>(input: &TensorView<'a>, narrow: &'a [u8]) -> Data<'a> {
+    match input.data() {
+        TensorData::F32(data) => Data::F32(data),
+        TensorData::I32(data) => Data::I32(data),
+        TensorData::I64(data) => Data::I64(data),
+        TensorData::U8(data) => Data::U8(data),
+        TensorData::I8(data) => Data::I8(data),
+        TensorData::Bool(_) => Data::Bool(narrow),
+    }
+}
+
+fn view<'a>(output: &Tensor<'a>, truths: &'a [bool]) -> Result<TensorView<'a>> {
+    match output.data {
+        Data::F32(data) => TensorView::new(output.shape, data),
+        Data::I64(data) => TensorView::new(output.shape, data),
+        Data::I32(data) => TensorView::new(output.shape, data),
+        Data::U8(data) => TensorView::new(output.shape, data),
+        Data::I8(data) => TensorView::new(output.shape, data),
+        Data::Bool(_) => TensorView::new(output.shape, truths),
+    }
+}
