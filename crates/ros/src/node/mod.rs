@@ -8,6 +8,7 @@ mod inbox;
 mod labels;
 mod outputs;
 mod params;
+mod path;
 mod topics;
 mod worker;
 

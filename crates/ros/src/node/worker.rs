@@ -94,6 +94,7 @@ impl Worker {
             let set = self.inbox.take(slop_ns, PATIENCE);
             if self.reset.swap(false, Ordering::Relaxed) {
                 self.stream.reset();
+                self.outputs.reset();
             }
             let done = match set {
                 Some(_) if !self.active.load(Ordering::Relaxed) => self.rest(),
