@@ -23,7 +23,7 @@ impl TrainingGroup for PythonGroup {
     fn all_gather(&self, payload: Vec<u8>) -> opendr::Result<Vec<Vec<u8>>> {
         Python::attach(|py| {
             let all = self.2.call1(py, (PyBytes::new(py, &payload),));
-            let all = all.and_then(|all| all.extract::<Vec<PyBackedBytes>>(py).map_err(PyErr::from));
+            let all = all.and_then(|all| all.extract::<Vec<PyBackedBytes>>(py));
             all.map(|all| all.iter().map(|bytes| bytes.to_vec()).collect())
                 .map_err(|raised| error_from_exception(py, raised))
         })
