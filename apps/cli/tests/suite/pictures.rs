@@ -265,8 +265,8 @@ fn bench_profiles_the_layers_of_networks() {
     assert!((sum - report["layers"]["ms"].as_f64().unwrap()).abs() < 1e-6, "{sum}");
     let convolution = layers.iter().find(|layer| layer["operator"] == "Conv").unwrap();
     assert!(convolution["gflops"].as_f64().unwrap() > 0.0, "{convolution}");
-    let trace: Value = serde_json::from_slice(&std::fs::read(trace).unwrap()).unwrap();
-    let calls = trace["traceEvents"].as_array().unwrap().iter().filter(|event| event["name"] == "call");
+    let events: Value = serde_json::from_slice(&fs::read(&trace).unwrap()).unwrap();
+    let calls = events["traceEvents"].as_array().unwrap().iter().filter(|event| event["name"] == "call");
     assert_eq!(calls.count(), 3);
     let text = run(&[]).stdout;
     assert!(text.contains("GFLOP/s") && text.contains("Conv"), "{text}");

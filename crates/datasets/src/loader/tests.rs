@@ -138,7 +138,10 @@ fn shares_divide_the_batches_and_read_only_their_own() {
                 assert_eq!((&one.indices, one.next_position), (&other.indices, other.next_position));
                 assert!(one.content == other.content);
             }
-            assert_eq!(read.load(Ordering::SeqCst), batches.iter().map(|batch| batch.indices.len()).sum());
+            assert_eq!(
+                read.load(Ordering::SeqCst),
+                batches.iter().map(|batch| batch.indices.len()).sum::<usize>()
+            );
         }
     }
     let error = loader(Pictures::new(22), 0).share(2, 2).err().unwrap();
