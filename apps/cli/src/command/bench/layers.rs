@@ -290,7 +290,9 @@ mod tests {
         assert!((first.gflops - 50.0).abs() < 1e-9 && (first.peak_share - 0.5).abs() < 1e-9);
         assert!((first.gb_per_s - 0.01).abs() < 1e-9 && (first.share - 0.2 / 0.34).abs() < 1e-9);
         let operators: Vec<_> = report.operators.iter().map(|row| (row.operator.as_str(), row.ms)).collect();
-        assert_eq!(operators, [("Conv", 0.24), ("Relu", 0.1)]);
+        assert!(
+            operators[0].0 == "Conv" && (operators[0].1 - 0.24).abs() < 1e-9 && operators[1] == ("Relu", 0.1)
+        );
         let text = report.to_string();
         assert!(text.contains("50%") && text.contains("Conv a (network 1)"), "{text}");
     }
