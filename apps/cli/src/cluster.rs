@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use clap::{Arg, ArgMatches};
-use opendr::{Error, Result};
+use opendr::{Error, JsonFormat, Result};
 use serde_json::{Value as Json, json};
 
 use crate::exit::Outcome;
@@ -37,11 +37,17 @@ pub fn address(matches: &ArgMatches) -> Option<&str> {
     matches.get_one::<String>(FLAG).map(String::as_str)
 }
 
-/// Carries out the command `name` on a cluster and prints its report. `call` describes the learner, the data and the options.
+/// Carries out the command `name` on a cluster and prints its report, of `format` as JSON. `call` describes the learner, the data and the options.
 ///
 /// # Errors
 /// `Unsupported` outside of the Python package; the errors of the command.
-pub fn run(name: &str, address: &str, matches: &ArgMatches, mut call: Json) -> Result<Outcome> {
+pub fn run(
+    name: &str,
+    address: &str,
+    format: JsonFormat,
+    matches: &ArgMatches,
+    mut call: Json,
+) -> Result<Outcome> {
     let Some(run) = CLUSTER.get() else {
         return Err(Error::unsupported(
             "--ray needs the command of the Python package: pip install opendr-rs ray, then python -m opendr",
@@ -55,7 +61,10 @@ pub fn run(name: &str, address: &str, matches: &ArgMatches, mut call: Json) -> R
     let (report, text) = run(&call.to_string())?;
     let fields: Json = serde_json::from_str(&report)
         .map_err(|error| Error::internal("the report of the cluster").with_source(error))?;
-    stdout::print(if matches.get_flag("json") { report.trim_end() } else { text.trim_end() })?;
+    match matches.get_flag("json") {
+        true => stdout::print_json(format, &fields)?,
+        false => stdout::print(text.trim_end())?,
+    }
     let skipped = fields.get("skipped").and_then(Json::as_u64).unwrap_or(0);
     Ok(if skipped == 0 { Outcome::Done } else { Outcome::SomeFailed })
 }

@@ -149,7 +149,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
             },
             "learner": on_cluster(spec, entry, matches, &bar)?,
         });
-        return cluster::run("eval", address, matches, call);
+        return cluster::run("eval", address, Evaluated::FORMAT, matches, call);
     }
     let external = dataset_flags::external(matches);
     let viewer = viewing::of_items(last.spec.class, matches, &bar)?;
@@ -213,7 +213,7 @@ fn in_environment(
             "first_seed": protocol.first_seed,
             "learner": on_cluster(spec, entry, matches, bar)?,
         });
-        return cluster::run("eval", address, matches, call);
+        return cluster::run("eval", address, POLICY_REPORT, matches, call);
     }
     let viewer = viewing::of_items(entry.spec.class, matches, bar)?;
     let mut environment = ViewedSource::new(&source, viewer).make()?;

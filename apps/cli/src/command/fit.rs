@@ -168,7 +168,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
             },
             "learner": { "name": entry.spec.name, "model": model, "params": params },
         });
-        return cluster::run("fit", address, matches, call);
+        return cluster::run("fit", address, Fitted::FORMAT, matches, call);
     }
     let curves = curves::of_training(options.logging_path.clone().unwrap_or_default());
     let _viewer = viewing::of_curves(entry.spec.class, curves, matches, &bar)?;

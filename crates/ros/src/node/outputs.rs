@@ -59,7 +59,7 @@ impl OutputTopics {
         Ok(())
     }
 
-    /// Begins new paths, as the stream begins anew.
+    /// Begins new paths, as the stream does.
     pub(super) fn reset(&mut self) {
         self.paths.reset();
     }
