@@ -60,7 +60,6 @@ impl Progress for PythonBar {
         if raised.is_none() {
             *raised = Python::attach(|py| py.check_signals()).err();
         }
-        // The command handles Ctrl-C itself.
-        raised.is_some() || opendr_cli::interrupted()
+        raised.is_some()
     }
 }

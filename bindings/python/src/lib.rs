@@ -19,7 +19,6 @@ mod environment;
 mod error;
 mod evaluate;
 mod generation;
-mod group;
 mod handle;
 mod header;
 mod mask;

@@ -5,9 +5,8 @@ use burn::optim::{ModuleOptimizer, OptimizerRecord};
 use burn::store::{ModuleRecord, RecordError};
 use burn::tensor::Bytes;
 use opendr_engine::{Error, Result, ResultExt};
-use opendr_runlog::{Checkpoint, Checkpoints};
+use opendr_runlog::Checkpoint;
 
-use crate::step_sum::{take, truncated};
 use crate::training_state::TrainingState;
 
 const NETWORK: &str = "network.bpk";
@@ -98,44 +97,6 @@ impl<'a> Saved<'a> {
         ))
         .with_source(error)
     }
-}
-
-/// Returns the files of a checkpoint as bytes for another process.
-///
-/// # Errors
-/// `Io` when a file cannot be read.
-pub fn checkpoint_bytes(checkpoint: &Checkpoint) -> Result<Vec<u8>> {
-    let mut bytes = checkpoint.step.to_le_bytes().to_vec();
-    for name in checkpoint.names() {
-        let content = checkpoint.file(name)?;
-        bytes.extend((name.len() as u64).to_le_bytes());
-        bytes.extend(name.as_bytes());
-        bytes.extend((content.len() as u64).to_le_bytes());
-        bytes.extend(content);
-    }
-    Ok(bytes)
-}
-
-/// Saves the checkpoint of another process among `checkpoints`.
-///
-/// # Errors
-/// `Format` for bytes that are not those of [`checkpoint_bytes`]; `Io`.
-pub fn save_checkpoint(checkpoints: &Checkpoints, mut bytes: &[u8]) -> Result<()> {
-    let step = u64::from_le_bytes(take(&mut bytes)?);
-    let mut files = Vec::new();
-    while !bytes.is_empty() {
-        let name = std::str::from_utf8(part(&mut bytes)?).map_err(|error| truncated().with_source(error))?;
-        files.push((name, part(&mut bytes)?));
-    }
-    checkpoints.save(step, &files).map(drop)
-}
-
-/// Takes a number of bytes and as many bytes.
-fn part<'a>(bytes: &mut &'a [u8]) -> Result<&'a [u8]> {
-    let length = usize::try_from(u64::from_le_bytes(take(bytes)?)).map_err(|_| truncated())?;
-    let (part, rest) = bytes.split_at_checked(length).ok_or_else(truncated)?;
-    *bytes = rest;
-    Ok(part)
 }
 
 fn bytes(written: std::result::Result<Bytes, RecordError>) -> Result<Vec<u8>> {

@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{
-    Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, LayerCost, Strides, Window,
-};
+use opendr_kernels::{Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, Strides, Window};
 use opendr_onnx::proto::NodeProto;
 
 use super::fusion::{self, Fused};
@@ -193,10 +191,6 @@ impl Kernel for ConvStep {
         self.0.run(io.compute, x, residual, io.write());
         Ok(())
     }
-
-    fn cost(&self) -> LayerCost {
-        self.0.cost()
-    }
 }
 
 struct DepthwiseStep(DepthwiseConvolution);
@@ -206,9 +200,5 @@ impl Kernel for DepthwiseStep {
         let x = io.read::<f32>(0);
         self.0.run(io.compute, x, io.write());
         Ok(())
-    }
-
-    fn cost(&self) -> LayerCost {
-        self.0.cost()
     }
 }
