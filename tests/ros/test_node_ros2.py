@@ -5,11 +5,12 @@ import signal
 import struct
 import subprocess
 import time
+import urllib.request
 
 import peers
 import pytest
 from patience import wait_until
-from node import Node, environment, opendr
+from node import START, Node, environment, opendr
 from pictures import image_fields, noise, photograph
 
 IMAGE, BOXES = "sensor_msgs/msg/Image", "vision_msgs/msg/Detection2DArray"
@@ -148,6 +149,19 @@ def test_the_annotated_picture_is_compressed(ros2, detector):
     message = ros2.decode(COMPRESSED, answer.data)
     assert bytes(message["data"][:2]) == b"\xff\xd8" and "jpeg" in message["format"]
     assert message["header"]["stamp"] == {"sec": 5, "nanosec": 0}
+
+
+def test_a_page_displays_what_the_node_processes(ros2):
+    with Node("ros2", DETECTOR, "--name", "viewed", "--image", "/camera/viewed", "--view=127.0.0.1:0", ready=0, ROS_DOMAIN_ID=ros2.domain) as node:
+        url = node.wait_for_line("viewer: ", START).split("viewer: ")[1].rstrip("/")
+        node.wait_for_line("is ready as", START)
+        answers = ros2.subscribe("/viewed/boxes", BOXES)
+        answers.wait_for_publishers()
+        message = ros2.encode(IMAGE, image_fields(64, 48, noise(64, 48), sec=5, nanosec=6))
+        answered(ros2, "/camera/viewed", IMAGE, message, answers)
+        with urllib.request.urlopen(f"{url}/api/next?after=0&plain=1", timeout=20) as answer:
+            content = answer.read()
+    assert answer.status == 200 and b"/camera/viewed" in content and b"inference" in content
 
 
 def test_reset_and_labels(ros2, detector):

@@ -6,6 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use opendr::Result;
 use opendr::dataset::ExternalDataset;
 use opendr::datasets::Problems;
+use serde_json::{Value as Json, json};
 
 use crate::stdout;
 
@@ -51,6 +52,13 @@ pub fn skip_broken_flag() -> Arg {
 pub fn external(matches: &ArgMatches) -> ExternalDataset {
     let path = matches.get_one::<PathBuf>(DATASET).cloned().unwrap_or_default();
     ExternalDataset::new(path, matches.get_one::<String>("format").cloned().unwrap_or_default())
+}
+
+/// Returns the description of the data set for a cluster: its absolute path and its format.
+pub fn described(matches: &ArgMatches) -> Json {
+    let external = external(matches);
+    let path = std::path::absolute(external.path()).unwrap_or_else(|_| external.path().to_owned());
+    json!({ "path": path, "format": external.dataset_type() })
 }
 
 /// Returns the split that the user named.

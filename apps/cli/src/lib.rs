@@ -13,6 +13,7 @@
 //! ```
 
 mod class_flags;
+mod cluster;
 mod command;
 mod curves;
 mod dataset_flags;
@@ -42,7 +43,8 @@ mod writer;
 
 use std::ffi::OsString;
 
-pub use progress_bar::ProgressBar;
+pub use cluster::set_cluster;
+pub use progress_bar::{ProgressBar, interrupted};
 
 /// Runs the command line `arguments`, of which the first is the program's name, and returns the exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {

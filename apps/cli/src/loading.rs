@@ -190,6 +190,17 @@ pub fn pretrained(spec: &str, matches: &ArgMatches, progress: &dyn Progress) -> 
     zoo(matches)?.get(&format!("{}{variant}", entry.spec.name), progress)
 }
 
+/// Returns the path of the model: that of `--model`, or the pretrained one.
+///
+/// # Errors
+/// As [`pretrained`].
+pub fn model(spec: &str, matches: &ArgMatches, progress: &dyn Progress) -> Result<PathBuf> {
+    match matches.get_one::<PathBuf>("model") {
+        Some(path) => Ok(path.clone()),
+        None => pretrained(spec, matches, progress),
+    }
+}
+
 /// Returns the path of the container `source`: an existing path, or a pretrained model.
 ///
 /// # Errors

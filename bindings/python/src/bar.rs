@@ -60,6 +60,7 @@ impl Progress for PythonBar {
         if raised.is_none() {
             *raised = Python::attach(|py| py.check_signals()).err();
         }
-        raised.is_some()
+        // The command handles Ctrl-C itself.
+        raised.is_some() || opendr_cli::interrupted()
     }
 }

@@ -7,10 +7,10 @@ use opendr::active::{ActiveContainer, EnvironmentScene, compare};
 use opendr::data::Pixels as Samples;
 use opendr::environment::EnvironmentSource;
 use opendr::evaluation::Teacher;
-use opendr::learner::{AnyLearner, AnyStream, Entry, Outputs, Port, Ports};
+use opendr::learner::{AnyLearner, AnyStream, Entry, Outputs, Port, Ports, TrainingGroup};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{Device, Error, FitData, FitEnvironments, FitOptions, Pool, Value, ValueType};
+use opendr::{Device, Error, FitData, FitEnvironments, FitOptions, PolicyEpisodes, Pool, Value, ValueType};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -21,6 +21,7 @@ use crate::datum::value_from_python;
 use crate::environment::GivenEnvironments;
 use crate::error::ToPython;
 use crate::evaluate::eval_options_from_json;
+use crate::group::PythonGroup;
 use crate::param::{params_from_python, python_from_params};
 use crate::pixels::image_from_python;
 use crate::report::json_of;
@@ -163,7 +164,9 @@ impl Handle {
     }
 
     /// Trains the learner. `options` are JSON; `teacher` is another handle, or the name and the object of a learner written in
-    /// Python. Returns the report as JSON and as text.
+    /// Python; `group` is that of [`PythonGroup`]. Returns the report as JSON and as text.
+    #[pyo3(signature = (dataset, val_dataset, teacher, options, silent, group=None))]
+    #[expect(clippy::too_many_arguments, reason = "arguments of a Python function")]
     fn fit(
         &self,
         py: Python<'_>,
@@ -172,6 +175,7 @@ impl Handle {
         teacher: Option<&Bound<'_, PyAny>>,
         options: &str,
         silent: bool,
+        group: Option<PythonGroup>,
     ) -> PyResult<(String, String)> {
         let mut options = options_from_json(options).to_python(py)?;
         opendr::check_fit(self.entry, &options.params).to_python(py)?;
@@ -184,10 +188,16 @@ impl Handle {
                 dataset: dataset.as_ref(),
                 val_dataset: val_dataset.as_ref().map(GivenDataset::as_ref),
                 teacher,
+                group: group.as_ref().map(|group| group as &dyn TrainingGroup),
             };
             let fitted = opendr::fit(lock(&self.learner).as_mut(), self.entry, data, &options, bar)?;
             Ok((json_of(&fitted)?, fitted.to_string()))
         })
+    }
+
+    /// Returns the default output folder of a training: a new one, or that of the last training to resume.
+    fn run_folder(&self, py: Python<'_>, resume: bool) -> PyResult<PathBuf> {
+        FitOptions { resume, ..FitOptions::default() }.output_folder(self.entry.spec.name).to_python(py)
     }
 
     /// Trains the policy in an environment. `options` are JSON. Returns the report as JSON and as text.
@@ -231,6 +241,42 @@ impl Handle {
                 opendr::evaluate_learner(learner.as_ref(), self.entry, environment.as_mut(), &protocol, bar)?;
             json_of(&report)
         })
+    }
+
+    /// Runs the policy on a part of the episodes of an evaluation. Returns them as JSON for [`Self::eval_joined`].
+    fn eval_in_part(
+        &self,
+        py: Python<'_>,
+        env: &Bound<'_, PyAny>,
+        episodes: u64,
+        first_seed: u64,
+    ) -> PyResult<String> {
+        let env = GivenEnvironments::from_python(env)?;
+        PythonBar::new(true).run(py, |bar| {
+            let mut environment = env.make()?;
+            let protocol = EvaluationProtocol { episodes, first_seed, ..EvaluationProtocol::default() };
+            let learner = lock(&self.learner);
+            let part = opendr::evaluate_episodes(
+                learner.as_ref(),
+                self.entry,
+                environment.as_mut(),
+                &protocol,
+                bar,
+            )?;
+            json_of(&part)
+        })
+    }
+
+    /// Joins the parts of an evaluation in their order. Returns the report as JSON and as text.
+    #[staticmethod]
+    fn eval_joined(py: Python<'_>, parts: Vec<String>, seconds: f64) -> PyResult<(String, String)> {
+        let read = |part: &String| {
+            serde_json::from_str::<PolicyEpisodes>(part)
+                .map_err(|error| Error::format("episodes of an evaluation").with_source(error))
+        };
+        let joined = parts.iter().map(read).collect::<opendr::Result<_>>();
+        let joined = joined.and_then(|parts| opendr::join_episodes(parts, seconds));
+        joined.and_then(|report| Ok((json_of(&report)?, report.to_string()))).to_python(py)
     }
 
     /// Evaluates the camera policy and the baselines on `episodes` episodes with consecutive seeds. Returns the rows as JSON.

@@ -19,6 +19,7 @@ mod environment;
 mod error;
 mod evaluate;
 mod generation;
+mod group;
 mod handle;
 mod header;
 mod mask;

@@ -1,9 +1,10 @@
-"""Evaluation and inference on a real Ray cluster of this machine."""
+"""Evaluation, inference and training on a real Ray cluster of this machine."""
 
 import json
 import os
 import shutil
 import signal
+import subprocess
 import sys
 
 import numpy as np
@@ -11,7 +12,7 @@ import opendr
 import pytest
 from opendr.engine.data import Image
 from opendr.engine.datasets import DatasetIterator
-from opendr.engine.target import BoundingBox, BoundingBoxList
+from opendr.engine.target import BoundingBox, BoundingBoxList, Category
 from opendr.perception.object_detection_2d import YOLOv5DetectorLearner
 
 from test_own_networks import FIXTURES, network
@@ -21,6 +22,17 @@ ray = pytest.importorskip("ray")
 SAMPLES = 24
 #: ONNX Runtime rounds otherwise with another number of threads.
 THREADS = os.cpu_count()
+
+
+def _end_once(kill):
+    """Ends this process, unless it is the first of ``kill`` or another one has ended."""
+    if kill is None or os.getpid() == kill[0]:
+        return
+    try:
+        os.close(os.open(kill[1], os.O_CREAT | os.O_EXCL))
+    except FileExistsError:
+        return
+    os.kill(os.getpid(), signal.SIGKILL)
 
 
 class Noise(DatasetIterator):
@@ -35,13 +47,8 @@ class Noise(DatasetIterator):
         return SAMPLES
 
     def __getitem__(self, index):
-        if self.kill is not None and index == 5 and os.getpid() != self.kill[0]:
-            try:
-                os.close(os.open(self.kill[1], os.O_CREAT | os.O_EXCL))
-            except FileExistsError:
-                pass
-            else:
-                os.kill(os.getpid(), signal.SIGKILL)
+        if index == 5:
+            _end_once(self.kill)
         width, height = self.size
         image = np.random.default_rng(index).integers(0, 256, (height, width, 3), np.uint8)
         return Image(image), BoundingBoxList([BoundingBox(name=0, left=1, top=1, width=20, height=20)])
@@ -110,3 +117,83 @@ def test_inputs_are_predicted_on_the_cluster(cluster, detector):
         learner.infer(images[0], ray=True)
     with pytest.raises(opendr.Unsupported, match="has a state"):
         opendr.learner("byte_track").infer(here, ray=True)
+
+
+class Shades(DatasetIterator):
+    """Noisy images, dark and bright; with ``kill``, the first other process that reads sample 5 ends, once."""
+
+    classes = ["dark", "bright"]
+
+    def __init__(self, kill=None):
+        self.kill = kill
+
+    def __len__(self):
+        return 44
+
+    def __getitem__(self, index):
+        if index == 5:
+            _end_once(self.kill)
+        noise = np.random.default_rng(index).integers(0, 128, (28, 28, 3), np.uint8)
+        return Image(noise + 127 * (index % 2)), Category(index % 2)
+
+
+def trained(out, dataset, **arguments):
+    learner = opendr.learners()["image_classifier"]()
+    fit = {"epochs": 3, "batch_size": 4, "accumulate": 2, "checkpoint_after_iter": 2, "silent": True}
+    results = learner.fit(dataset, dataset, out=out, **fit, **arguments)
+    # The file of the network for further training also has random ids of its parameters.
+    return results, (out / "model" / "model.onnx").read_bytes()
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_processes_of_a_cluster_train_the_weights_of_one(cluster, tmp_path):
+    here, weights = trained(tmp_path / "here", Shades())
+    there, those = trained(tmp_path / "there", Shades(), ray=True)
+    assert weights == those and weights
+    assert there["loss"] == here["loss"] and there["val_accuracy"] == here["val_accuracy"]
+
+    killed = tmp_path / "killed"
+    again, same = trained(tmp_path / "again", Shades((os.getpid(), str(killed))), ray=True)
+    assert killed.exists(), "no process was killed"
+    assert weights == same and again["loss"] == here["loss"]
+
+
+def test_the_command_runs_on_a_cluster(tmp_path):
+    for index in range(12):
+        folder = tmp_path / "shades" / Shades.classes[index % 2]
+        folder.mkdir(parents=True, exist_ok=True)
+        Shades()[index][0].save(folder / f"{index}.png")
+
+    def command(*words):
+        words = [words[0], "image_classifier", str(tmp_path / "shades"), *map(str, words[1:]), "--quiet", "--json"]
+        done = subprocess.run([sys.executable, "-m", "opendr", *words], capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    fit = ["fit", "--epochs", "1", "--batch-size", "2", "--accumulate", "2"]
+    for name, more in (("here", []), ("there", ["--ray", "local", "--threads", "1"])):
+        assert command(*fit, "--out", tmp_path / name, *more)["complete"]
+    here, there = ((tmp_path / name / "model" / "model.onnx").read_bytes() for name in ("here", "there"))
+    assert here == there
+    model = ["--model", tmp_path / "here" / "model"]
+    assert without_times({"report": command("eval", *model)}) == without_times({"report": command("eval", *model, "--ray", "local")})
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_what_does_not_train_on_a_cluster_says_why(cluster, tmp_path):
+    with pytest.raises(opendr.InvalidParam, match="set accumulate to a multiple"):
+        opendr.learners()["image_classifier"]().fit(Shades(), out=tmp_path / "one", ray=True, silent=True)
+    with pytest.raises(opendr.Unsupported, match="one process"):
+        opendr.learners()["single_demo_grasp"]().fit(Shades(), out=tmp_path / "grasp", ray=True, silent=True)
+    with pytest.raises(opendr.NotFound, match="does not exist"):
+        opendr.learners()["image_classifier"]().fit(tmp_path / "none", out=tmp_path / "data", accumulate=2, ray=True, silent=True)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_episodes_on_the_cluster_are_those_of_one_machine(cluster, tmp_path):
+    policy = opendr.learners()["ppo"]()
+    policy.fit("CartPole-v1", out=tmp_path / "ppo", iters=2000, silent=True)
+    here, there = (policy.eval(episodes=30, **where) for where in ({}, {"ray": True}))
+    assert {**there, "seconds": 0} == {**here, "seconds": 0} and here["episodes"] == 30
+    with pytest.raises(ValueError, match="at least one episode"):
+        policy.eval(episodes=0, ray=True)

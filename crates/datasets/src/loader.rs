@@ -27,7 +27,7 @@ use epoch::each_batch;
 pub use epoch::{Batch, Epoch};
 pub use image_batch::{ImageBatch, ImageBatches};
 pub use options::LoaderOptions;
-use queue::Job;
+use queue::{Job, Share};
 pub use skipped::Skipped;
 
 /// A loader: a data set, the augmentation of its samples, and how they become batches.
@@ -55,6 +55,7 @@ pub struct Loader<'d, C = SampleBatches> {
     pipeline: Arc<Pipeline>,
     collate: Arc<C>,
     options: LoaderOptions,
+    share: Share,
 }
 
 /// Stream of the random numbers that order an epoch; the streams of samples are their indices.
@@ -68,7 +69,8 @@ impl<'d> Loader<'d> {
     pub fn new(dataset: impl DatasetIterator + 'd, options: LoaderOptions) -> Result<Self> {
         options.check()?;
         let pipeline = Arc::default();
-        Ok(Self { dataset: Arc::new(dataset), pipeline, collate: Arc::new(SampleBatches), options })
+        let collate = Arc::new(SampleBatches);
+        Ok(Self { dataset: Arc::new(dataset), pipeline, collate, options, share: Share::ALL })
     }
 }
 
@@ -82,8 +84,20 @@ impl<'d, C: Collate> Loader<'d, C> {
     /// Sets how samples become batches.
     #[must_use]
     pub fn collate<D: Collate>(self, collate: D) -> Loader<'d, D> {
-        let Self { dataset, pipeline, options, .. } = self;
-        Loader { dataset, pipeline, collate: Arc::new(collate), options }
+        let Self { dataset, pipeline, options, share, .. } = self;
+        Loader { dataset, pipeline, collate: Arc::new(collate), options, share }
+    }
+
+    /// Restricts the loader to every `size`-th batch, from batch `rank` on, counted from the position at which it begins. Other batches are
+    /// not read.
+    ///
+    /// # Errors
+    /// `InvalidParam` where `rank` is not less than `size`.
+    pub fn share(self, rank: usize, size: usize) -> Result<Self> {
+        if rank >= size {
+            return Err(Error::invalid_param(format!("share {rank} of {size} batches does not exist")));
+        }
+        Ok(Self { share: Share { rank, size }, ..self })
     }
 
     /// Returns the options.
@@ -137,6 +151,7 @@ impl<'d, C: Collate> Loader<'d, C> {
             order: self.order(epoch),
             epoch,
             position: 0,
+            share: self.share,
         }
     }
 

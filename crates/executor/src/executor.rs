@@ -3,13 +3,12 @@
 use std::time::{Duration, Instant};
 
 use opendr_engine::{Error, Result};
-use opendr_kernels::{Arena, Compute};
-use opendr_onnx::proto::NodeProto;
+use opendr_kernels::{Arena, Compute, LayerCost};
 
 use crate::constant::Given;
 use crate::declared::Declared;
 use crate::reading::Model;
-use crate::run::Run;
+use crate::run::{Observe, Run};
 use crate::stages::Stages;
 use crate::tensor::{Kind, Tensor};
 
@@ -22,15 +21,21 @@ pub struct Executor {
     arena: Arena,
 }
 
-/// Time of the steps of a node.
+/// Measurement of a step of a run. A node has as many as it has steps.
 #[derive(Debug, Clone)]
-pub struct LayerTime {
-    /// Name of the node.
+pub struct LayerProfile {
+    /// Name of the first output of the node.
     pub name: String,
-    /// Operator.
+    /// Operator of the node.
     pub operator: String,
-    /// Time of the last run.
+    /// Time at which the step began.
+    pub start: Instant,
+    /// Duration.
     pub time: Duration,
+    /// Arithmetic of products, and bytes of packed weights; zero for operators without products.
+    pub cost: LayerCost,
+    /// Bytes of the tensors that the step reads and writes.
+    pub tensor_bytes: u64,
 }
 
 impl Executor {
@@ -88,30 +93,37 @@ impl Executor {
         inputs: &[Tensor<'_>],
         sink: &mut dyn FnMut(&[Tensor<'_>]) -> Result<()>,
     ) -> Result<()> {
-        self.run_observed(inputs, sink, &mut |_| ())
+        self.run_observed(inputs, sink, &mut |_, _| ())
     }
 
-    /// Runs the model once, and returns the time of every node that has steps, in their order.
+    /// Runs the model as [`Executor::run`] does, and returns the measurements of its steps, in their order. Steps within branches and
+    /// loops count as one.
     ///
     /// # Errors
     /// Those of [`Executor::run`].
-    pub fn profile(&mut self, inputs: &[Tensor<'_>]) -> Result<Vec<LayerTime>> {
-        let mut times: Vec<LayerTime> = Vec::new();
-        let mut last = Instant::now();
-        self.run_observed(inputs, &mut |_| Ok(()), &mut |node| {
-            let now = Instant::now();
+    pub fn profile(
+        &mut self,
+        inputs: &[Tensor<'_>],
+        sink: &mut dyn FnMut(&[Tensor<'_>]) -> Result<()>,
+    ) -> Result<Vec<LayerProfile>> {
+        let mut layers = Vec::new();
+        let mut start = Instant::now();
+        self.run_observed(inputs, sink, &mut |node, cost| {
+            let time = start.elapsed();
+            let (cost, tensor_bytes) = cost();
             let name = node.output.first().cloned().unwrap_or_default();
-            times.push(LayerTime { name, operator: node.op_type.clone(), time: now - last });
-            last = now;
+            let operator = node.op_type.clone();
+            layers.push(LayerProfile { name, operator, start, time, cost, tensor_bytes });
+            start = Instant::now();
         })?;
-        Ok(times)
+        Ok(layers)
     }
 
     fn run_observed(
         &mut self,
         inputs: &[Tensor<'_>],
         sink: &mut dyn FnMut(&[Tensor<'_>]) -> Result<()>,
-        observe: &mut dyn FnMut(&NodeProto),
+        observe: &mut Observe<'_>,
     ) -> Result<()> {
         self.check(inputs)?;
         let mut run = Run { arena: &mut self.arena, compute: &self.compute, looped: 0, observe };

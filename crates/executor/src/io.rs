@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{Arena, Compute, Number, Region, Rest, Written};
+use opendr_kernels::{Arena, Compute, LayerCost, Number, Region, Rest, Written};
 
 use crate::constant::Constant;
 use crate::tensor::{Data, Tensor};
@@ -16,6 +16,20 @@ pub(crate) enum Place {
     Constant(Arc<Constant>),
     Input(usize),
     Arena(Region),
+}
+
+impl Place {
+    /// Returns the bytes of the tensor.
+    pub(crate) fn bytes(&self, inputs: &[Tensor<'_>]) -> usize {
+        match self {
+            Self::Absent => 0,
+            Self::Constant(constant) => constant.bytes(),
+            Self::Input(index) => {
+                inputs.get(*index).map_or(0, |input| input.data.len() * input.data.kind().bytes())
+            }
+            Self::Arena(region) => region.bytes,
+        }
+    }
 }
 
 /// The tensors of a step.
@@ -79,4 +93,9 @@ fn numbers<'a, T: Number>(data: Data<'a>) -> &'a [T] {
 /// What computes a step; the plan has checked shapes and types.
 pub(crate) trait Kernel: Send + Sync {
     fn run(&self, io: &mut Io<'_>) -> Result<()>;
+
+    /// Returns the arithmetic of products, and the bytes of weights that are not among the inputs.
+    fn cost(&self) -> LayerCost {
+        LayerCost::default()
+    }
 }

@@ -52,6 +52,6 @@ mod subgraphs;
 mod tensor;
 mod value;
 
-pub use executor::{Executor, LayerTime};
+pub use executor::{Executor, LayerProfile};
 pub use ops::supported_operators;
 pub use tensor::{Data, Kind, Tensor};

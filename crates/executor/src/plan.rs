@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{Arena, Compute, Region};
+use opendr_kernels::{Arena, Compute, LayerCost, Region};
 
 use crate::constant::{Constant, Given, MAX_BYTES, too_many};
 use crate::graph::Graph;
@@ -13,12 +13,21 @@ use crate::planning::{Cut, Planned, planned};
 use crate::tensor::{Data, Kind, Tensor};
 use crate::value::{Id, Source};
 
-struct PlannedStep {
+pub(crate) struct PlannedStep {
     kernel: Box<dyn Kernel>,
     reads: Vec<Place>,
     write: Region,
     sizes: Vec<usize>,
-    node: usize,
+    pub(crate) node: usize,
+}
+
+impl PlannedStep {
+    /// Returns the arithmetic and weights, and the bytes of the tensors that the step reads and writes.
+    pub(crate) fn cost(&self, inputs: &[Tensor<'_>]) -> (LayerCost, u64) {
+        let read: usize = self.reads.iter().map(|place| place.bytes(inputs)).sum();
+        let written: usize = self.sizes.iter().sum();
+        (self.kernel.cost(), (read + written) as u64)
+    }
 }
 
 struct PlannedOutput {
@@ -101,20 +110,20 @@ impl Plan {
         Ok(Self { given, remaining, steps, outputs, arena_bytes })
     }
 
-    /// Runs all steps; `observe` is called after each with the index of its node.
+    /// Runs all steps; `observe` is called after each.
     pub(crate) fn run(
         &self,
         arena: &mut Arena,
         inputs: &[Tensor<'_>],
         compute: &Compute,
-        mut observe: impl FnMut(usize),
+        mut observe: impl FnMut(&PlannedStep),
     ) -> Result<()> {
         for step in &self.steps {
             let (written, rest) = arena.split(step.write);
             let mut io =
                 Io { reads: &step.reads, inputs, rest, written: Some(written), sizes: &step.sizes, compute };
             step.kernel.run(&mut io)?;
-            observe(step.node);
+            observe(step);
         }
         Ok(())
     }

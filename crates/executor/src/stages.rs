@@ -128,8 +128,10 @@ impl Stages {
         let Stage { graph, plans, .. } = &self.stages[at];
         let Some(plan) = plans.last() else { return Err(Error::internal("a model without a plan")) };
         let observe = &mut *run.observe;
-        plan.run(run.arena, inputs, run.compute, |node| {
-            graph.nodes.get(node).into_iter().for_each(&mut *observe)
+        plan.run(run.arena, inputs, run.compute, |step| {
+            if let Some(node) = graph.nodes.get(step.node) {
+                observe(node, &|| step.cost(inputs));
+            }
         })?;
         let Some(remaining) = &plan.remaining else {
             give(plan, run.arena, inputs, sink)?;
@@ -145,7 +147,7 @@ impl Stages {
         let (graph, hosts) = (Arc::clone(graph), remaining.hosts.clone());
         for node in hosts.iter().filter_map(|&index| graph.nodes.get(index)) {
             let outputs = self.run_host(&graph, node, run, &values)?;
-            (run.observe)(node);
+            (run.observe)(node, &Default::default);
             values.extend(node.output.iter().cloned().zip(outputs));
         }
         Ok(Some(values))
@@ -187,7 +189,7 @@ impl Stages {
         });
         let tensors = tensors.collect::<Result<Vec<Tensor<'_>>>>()?;
         let mut inner =
-            Run { arena: &mut *run.arena, compute: run.compute, looped: run.looped, observe: &mut |_| () };
+            Run { arena: &mut *run.arena, compute: run.compute, looped: run.looped, observe: &mut |_, _| () };
         let mut outputs = Vec::new();
         let ran = self.run(&mut inner, &tensors, &mut |tensors| {
             outputs.extend(tensors.iter().map(|tensor| Arc::new(Constant::copied(tensor))));

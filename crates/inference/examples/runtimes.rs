@@ -85,9 +85,9 @@ fn print_layers(file: &str, bytes: &[u8]) -> Result<()> {
     let infos = Session::open_with(&Builtin, bytes, SessionOptions::default())?.inputs().to_vec();
     let owned: Vec<Owned> = infos.iter().map(Owned::random).collect();
     let tensors: Vec<opendr_executor::Tensor<'_>> = owned.iter().filter_map(Owned::of_executor).collect();
-    let mut least: Vec<opendr_executor::LayerTime> = executor.profile(&tensors)?;
+    let mut least: Vec<opendr_executor::LayerProfile> = executor.profile(&tensors, &mut |_| Ok(()))?;
     for _ in 0..30 {
-        for (least, new) in least.iter_mut().zip(executor.profile(&tensors)?) {
+        for (least, new) in least.iter_mut().zip(executor.profile(&tensors, &mut |_| Ok(()))?) {
             least.time = least.time.min(new.time);
         }
     }

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use opendr_engine::{Device, Error, ErrorKind, Result};
-use opendr_executor::{Data, Executor, Tensor};
+use opendr_executor::{Data, Executor, LayerProfile, Tensor};
 use opendr_kernels::{Compute, Isa, WorkerPool};
 use smallvec::SmallVec;
 
@@ -62,7 +62,7 @@ fn with_advice(error: Error) -> Error {
 static POOLS: Mutex<Vec<(usize, Weak<WorkerPool>)>> = Mutex::new(Vec::new());
 
 /// Returns the kernels on a pool that all sessions with the same number of threads share.
-fn compute(threads: usize) -> Compute {
+pub(crate) fn compute(threads: usize) -> Compute {
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     pools.retain(|(_, pool)| pool.strong_count() > 0);
     let found = pools.iter().find(|(count, _)| *count == threads).and_then(|(_, pool)| pool.upgrade());
@@ -93,6 +93,22 @@ impl Engine for ExecutorEngine {
     }
 
     fn run(&mut self, inputs: &[TensorView<'_>], sink: &mut Sink<'_>) -> Result<()> {
+        self.run_by(inputs, sink, Executor::run)
+    }
+
+    fn profile(&mut self, inputs: &[TensorView<'_>], sink: &mut Sink<'_>) -> Result<Vec<LayerProfile>> {
+        self.run_by(inputs, sink, Executor::profile)
+    }
+}
+
+impl ExecutorEngine {
+    /// Calls `run` with the inputs as the executor has them, and `sink` with its outputs as sessions have them.
+    fn run_by<R>(
+        &mut self,
+        inputs: &[TensorView<'_>],
+        sink: &mut Sink<'_>,
+        run: impl FnOnce(&mut Executor, &[Tensor<'_>], &mut dyn FnMut(&[Tensor<'_>]) -> Result<()>) -> Result<R>,
+    ) -> Result<R> {
         for (input, narrow) in inputs.iter().zip(&mut self.narrow) {
             if let TensorData::Bool(data) = input.data() {
                 narrow.clear();
@@ -108,7 +124,7 @@ impl Engine for ExecutorEngine {
             .collect();
         let (truths, infos) = (&mut self.truths, &self.header.outputs);
         let mut has_run = false;
-        let ran = self.executor.run(&tensors, &mut |outputs| {
+        let ran = run(&mut self.executor, &tensors, &mut |outputs| {
             has_run = true;
             for ((output, info), truths) in outputs.iter().zip(infos).zip(truths.iter_mut()) {
                 if let (Data::Bool(data), ElementType::Bool) = (output.data, info.element_type) {

@@ -5,8 +5,8 @@
 //! * [`TensorView`]: a borrowed tensor, input and output of a session; [`TensorInfo`]: a declared input or output.
 //! * [`Runtime`] and [`Engine`]: the interface of runtimes, with [`OnnxRuntime`] and [`Builtin`].
 //! * [`default_runtime`], [`device`] and [`describe`]: the choice of runtime and device.
-//! * [`recording`] and [`timing`]: the inputs and the time of all sessions of a thread, for calibration and
-//!   benchmarks.
+//! * [`recording`], [`timing`] and [`layers`]: the inputs, the time and the layers of all sessions of a thread, for calibration
+//!   and benchmarks.
 //!
 //! Models are read and rewritten in `opendr-onnx`, converted in `opendr-import`, quantised in `opendr-optimize`, and
 //! downloaded in `opendr-zoo`.
@@ -41,6 +41,7 @@ mod session;
 mod tensor;
 mod threads;
 
+pub mod layers;
 pub mod recording;
 pub mod timing;
 

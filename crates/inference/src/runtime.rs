@@ -1,6 +1,7 @@
 //! The interface behind a session: a runtime opens models, an engine runs one of them.
 
 use opendr_engine::{Device, Result};
+use opendr_executor::LayerProfile;
 
 use crate::tensor::{TensorInfo, TensorView};
 use crate::threads::default_threads;
@@ -43,6 +44,14 @@ pub trait Engine: Send {
     /// # Errors
     /// Those of the engine, and those that `sink` returns.
     fn run(&mut self, inputs: &[TensorView<'_>], sink: &mut Sink<'_>) -> Result<()>;
+
+    /// Runs the model as [`Engine::run`] does, and returns the measurements of its steps; none where the engine has no profiler.
+    ///
+    /// # Errors
+    /// Those of [`Engine::run`].
+    fn profile(&mut self, inputs: &[TensorView<'_>], sink: &mut Sink<'_>) -> Result<Vec<LayerProfile>> {
+        self.run(inputs, sink).map(|()| Vec::new())
+    }
 
     /// Returns the device of the engine.
     fn device(&self) -> Device {

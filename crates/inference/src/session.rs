@@ -1,6 +1,7 @@
 //! Opened models: the interface between learners and runtimes.
 
 use std::fmt;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -8,7 +9,7 @@ use opendr_engine::{Device, Error, Result};
 
 use crate::runtime::{Engine, Runtime, SessionOptions};
 use crate::tensor::{TensorInfo, TensorView};
-use crate::{recording, selection, timing};
+use crate::{layers, recording, selection, timing};
 
 /// An opened model. Threads can share a session; runs are serialised.
 ///
@@ -32,7 +33,11 @@ pub struct Session {
     outputs: Vec<TensorInfo>,
     device: Device,
     runtime: &'static str,
+    /// Number among the sessions of the process.
+    number: usize,
 }
+
+static SESSIONS: AtomicUsize = AtomicUsize::new(0);
 
 impl Session {
     /// Opens an ONNX model with the best available runtime for the device ([`crate::default_runtime`]).
@@ -72,6 +77,7 @@ impl Session {
             device: engine.device(),
             engine: Mutex::new(engine),
             runtime,
+            number: SESSIONS.fetch_add(1, Ordering::Relaxed),
         }
     }
 
@@ -131,7 +137,7 @@ impl Session {
         // A panic in an earlier sink does not affect the engine.
         let mut engine = self.engine.lock().unwrap_or_else(PoisonError::into_inner);
         let start = Instant::now();
-        engine.run(inputs, &mut |outputs| {
+        let mut sink = |outputs: &[TensorView<'_>]| {
             timing::add(start, Instant::now());
             if outputs.len() != self.outputs.len() {
                 return Err(Error::internal(format!(
@@ -144,7 +150,13 @@ impl Session {
                 recording::add_outputs(run, outputs);
             }
             sink(outputs)
-        })
+        };
+        if !layers::is_on() {
+            return engine.run(inputs, &mut sink);
+        }
+        let profile = engine.profile(inputs, &mut sink)?;
+        layers::add(self.number, profile);
+        Ok(())
     }
 }
 

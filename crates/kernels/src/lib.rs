@@ -6,6 +6,7 @@
 //! * [`Network`], with [`Dense`], [`Conv2d`] and [`LayerNorm`], [`Gru`], and [`MultiHeadAttention`], [`Embedding`] and
 //!   [`Gelu`] of transformers: layers with explicit gradients on flat parameters.
 //! * [`ByteConvolution`], [`ByteDepthwise`]: layers of quantised networks, with exact sums of products of bytes.
+//! * [`Limits`]: arithmetic and bandwidth of the machine, measured; [`LayerCost`]: those of a layer.
 //! * [`Adam`], [`Momentum`], [`clip_gradient_norm`]: optimisers. [`RealFourier`]: the Fourier transform for audio.
 //!
 //! The number of threads never changes a result; the instruction set changes the last bits.
@@ -33,6 +34,7 @@ mod binary;
 mod column_sums;
 mod compute;
 mod conv;
+mod cost;
 mod elementary;
 mod fourier;
 mod gaussian;
@@ -40,6 +42,7 @@ mod initialise;
 mod isa;
 mod lanes;
 mod layer;
+mod limits;
 mod matrix;
 mod network;
 mod optimizer;
@@ -56,6 +59,7 @@ pub use binary::{Binary, Operand};
 pub use column_sums::add_column_sums;
 pub use compute::Compute;
 pub use conv::{Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, Strides, Window};
+pub use cost::LayerCost;
 pub use elementary::{exp_in_place, sigmoid_in_place, tanh_in_place};
 pub use fourier::{FOURIER_FRAMES, FourierScratch, RealFourier, Spectrum};
 pub use gaussian::{gaussian_backward, gaussian_entropy, gaussian_log_density};
@@ -64,6 +68,7 @@ pub use isa::Isa;
 pub use layer::{
     AttentionTape, Conv2d, Dense, Embedding, Gelu, Gru, GruTape, LayerNorm, MultiHeadAttention, Sequences,
 };
+pub use limits::Limits;
 pub use matrix::{Matrix, MatrixMut};
 pub use network::{Layer, Network, Tape};
 pub use optimizer::{

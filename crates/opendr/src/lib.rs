@@ -119,7 +119,8 @@ pub use opendr_viewer as viewer;
 pub use opendr_webots as webots;
 pub use pipeline::Pipeline;
 pub use policy_evaluation::{
-    PolicyController, PolicyEvaluation, evaluate_learner, evaluate_policy, training_environment,
+    PolicyController, PolicyEpisodes, PolicyEvaluation, evaluate_episodes, evaluate_learner, evaluate_policy,
+    join_episodes, training_environment,
 };
 pub use priors::{prior, priors};
 pub use registry::registry;

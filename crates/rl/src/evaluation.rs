@@ -1,8 +1,9 @@
 //! Evaluation of policies on fixed episodes.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
-use opendr_engine::environment::{Controller, Environment, Info, ResetOptions, Step};
+use opendr_engine::environment::{Controller, Environment, ResetOptions, Step};
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Random, Result, ResultExt as _, Statistics};
 use opendr_kernels::Compute;
@@ -41,8 +42,8 @@ pub struct EvaluatedEpisode {
     pub success: Option<bool>,
     /// Whether it terminated, as opposed to being truncated.
     pub terminated: bool,
-    /// Info of its last step.
-    pub info: Info,
+    /// Numbers of the info of its last step.
+    pub info: Vec<(Cow<'static, str>, f64)>,
 }
 
 /// A success rate with its confidence interval.
@@ -70,7 +71,7 @@ pub struct EvaluationReport {
     /// Success rate over the episodes that report success; none if none does.
     pub success: Option<SuccessRate>,
     /// Mean of each other number in the info of the last steps, over the episodes that report it.
-    pub info: Vec<(&'static str, f64)>,
+    pub info: Vec<(Cow<'static, str>, f64)>,
     /// Wall-clock time, in seconds.
     pub seconds: f64,
 }
@@ -195,12 +196,12 @@ impl EvaluationReport {
 }
 
 /// Means over the episodes that report a number, in the order of the first report.
-fn mean_info(episodes: &[EvaluatedEpisode]) -> Vec<(&'static str, f64)> {
-    let mut sums: Vec<(&'static str, f64, f64)> = Vec::new();
-    for (name, value) in episodes.iter().flat_map(|episode| episode.info.iter()) {
-        match sums.iter_mut().find(|(known, ..)| *known == name) {
+fn mean_info(episodes: &[EvaluatedEpisode]) -> Vec<(Cow<'static, str>, f64)> {
+    let mut sums: Vec<(Cow<'static, str>, f64, f64)> = Vec::new();
+    for (name, value) in episodes.iter().flat_map(|episode| &episode.info) {
+        match sums.iter_mut().find(|(known, ..)| known == name) {
             Some((_, sum, count)) => (*sum, *count) = (*sum + value, *count + 1.0),
-            None => sums.push((name, value, 1.0)),
+            None => sums.push((name.clone(), *value, 1.0)),
         }
     }
     let others = sums.into_iter().filter(|(name, ..)| *name != "success");
@@ -225,7 +226,7 @@ fn run(
         earned += step.reward;
         if step.is_over() || length == max_steps {
             let (success, terminated) = (success(&step), step.terminated);
-            let info = step.info;
+            let info = step.info.iter().map(|(name, value)| (Cow::Borrowed(name), value)).collect();
             return Ok(EvaluatedEpisode { seed, total_reward: earned, length, success, terminated, info });
         }
     }
@@ -279,20 +280,18 @@ mod tests {
 
     #[test]
     fn numbers_of_last_steps_are_averaged_over_the_episodes_that_report_them() {
-        let episode = |info: Info| EvaluatedEpisode {
+        let episode = |info: &[(&'static str, f64)]| EvaluatedEpisode {
             seed: 0,
             total_reward: 1.0,
             length: 2,
-            success: info.success(),
+            success: Some(info[0].1 > 0.5),
             terminated: true,
-            info,
+            info: info.iter().map(|(name, value)| (Cow::Borrowed(*name), *value)).collect(),
         };
-        let infos = [
-            Info::default().with("success", 1.0).with("spl", 0.5),
-            Info::default().with("success", 0.0).with("spl", 0.0).with("angle", 3.0),
-        ];
+        let infos =
+            [&[("success", 1.0), ("spl", 0.5)][..], &[("success", 0.0), ("spl", 0.0), ("angle", 3.0)]];
         let report = EvaluationReport::of(infos.into_iter().map(episode).collect(), 1.0);
-        assert_eq!(report.info, [("spl", 0.25), ("angle", 3.0)]);
+        assert_eq!(report.info, [("spl".into(), 0.25), ("angle".into(), 3.0)]);
         assert_eq!(Statistics::from(&report).get("final_spl"), Some(0.25));
     }
 

@@ -28,7 +28,9 @@ mod ros_args;
 pub use environment_node::{EnvironmentNode, EnvironmentOptions, ObservationWriter};
 pub use graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, Severity, TriggerHandler};
 pub use names::Names;
-pub use node::{LearnerNode, NodeOptions, NodeParams, SharedSubscriptions, TopicOptions, default_topics};
+pub use node::{
+    LearnerNode, NodeObserver, NodeOptions, NodeParams, SharedSubscriptions, TopicOptions, default_topics,
+};
 pub use parameter_table::ParameterTable;
 pub use ros_args::{RosArgs, ros_args_from_ros1};
 pub use ros1::Ros1Node;

@@ -34,6 +34,11 @@ impl RegisteredSource {
     pub fn id(&self) -> &str {
         self.registration.id()
     }
+
+    /// Returns the parameters that differ from the defaults.
+    pub fn params(&self) -> &ParamMap {
+        &self.params
+    }
 }
 
 impl EnvironmentSource for RegisteredSource {

@@ -16,13 +16,14 @@
 //! assert!(schedule.lr(0) > schedule.lr(50) && schedule.lr(50) > schedule.lr(99));
 //! ```
 
+mod any_collate;
 mod average;
 mod checkpoint;
 mod device;
 pub mod export;
 mod fit_learner;
 pub mod fuzzing;
-mod gradient;
+mod gradients;
 mod kept_heap;
 pub mod layers;
 mod memory;
@@ -30,9 +31,14 @@ mod objective;
 mod opening;
 mod optimizer;
 mod params;
+mod payload;
+mod running_statistics;
 mod schedule;
+mod step_sum;
+mod trained_network;
 mod training;
 mod training_state;
+mod traversal;
 pub mod weights;
 
 pub use device::training_device;

@@ -5,26 +5,29 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use burn::module::Module;
-use burn::optim::{GradientsAccumulator, GradientsParams, ModuleOptimizer};
+use burn::optim::ModuleOptimizer;
 use burn::tensor::{Device, Tensor};
-use opendr_datasets::loader::{Batch, Collate, Loader, LoaderOptions};
+use opendr_datasets::loader::{Batch, Loader, LoaderOptions};
 use opendr_engine::data::Image;
 use opendr_engine::dataset::DatasetIterator;
-use opendr_engine::learner::FitJob;
+use opendr_engine::learner::{FitJob, TrainingGroup};
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Random, Result, ResultExt, Statistics, Unit};
-use opendr_runlog::{Checkpoints, RunLog};
+use opendr_runlog::{Checkpoint, Checkpoints, RunLog};
 
-use crate::average::Average;
-use crate::checkpoint::Saved;
-use crate::gradient::{gradient_norm, scaled};
+use crate::any_collate::{AnyBatch, AnyCollate};
+use crate::checkpoint::{Saved, checkpoint_bytes, save_checkpoint, state_files};
+use crate::gradients::NetworkGradients;
 use crate::kept_heap::KeptHeap;
 use crate::memory::{TRIAL_SAMPLES, check_memory};
 use crate::optimizer::optimizer;
+use crate::payload::take;
+use crate::running_statistics::running_statistics;
 use crate::schedule::Schedule;
+use crate::step_sum::{BatchResult, StepSum};
+use crate::trained_network::{NetworkOf, TrainedNetwork};
 use crate::training_state::{Best, Setting, TrainingState};
-use crate::{Container, Objective, TrainingParams, training_device};
+use crate::{Loss, Objective, TrainingParams, training_device};
 
 /// Result of a validation.
 pub struct Score {
@@ -62,6 +65,9 @@ pub fn seeded_device(job: &FitJob<'_>, params: &TrainingParams) -> Result<Device
 
 /// Trains `network` on `dataset` and writes the result as a container into [`FitJob::model`].
 ///
+/// The processes of [`FitJob::group`] share the batches of each step, of which there are [`TrainingParams::accumulate`]: the weights are
+/// those of one process with the same parameters, bit for bit.
+///
 /// On the CPU of one machine, the same seed yields the same weights, bit for bit, as long as no other training runs in the same
 /// process: Burn has one random number generator.
 ///
@@ -80,11 +86,30 @@ pub fn fit_network<O: Objective>(
     job: &FitJob<'_>,
 ) -> Result<Statistics> {
     params.check()?;
+    let device = training_device(job.device)?.autodiff();
+    let mut network = NetworkOf::new(objective, network, params.ema > 0.0, &device);
+    fit_any_network(&mut network, params, dataset, validate, job)
+}
+
+/// [`fit_network`] for a network of any type.
+fn fit_any_network(
+    network: &mut dyn TrainedNetwork,
+    params: &TrainingParams,
+    dataset: &dyn DatasetIterator,
+    validate: Option<Validate<'_>>,
+    job: &FitJob<'_>,
+) -> Result<Statistics> {
     if dataset.is_empty() {
         return Err(Error::invalid_input("the training data set is empty"));
     }
+    let (accumulate, size) = (params.accumulate, job.group.map_or(1, TrainingGroup::size));
+    if !accumulate.is_multiple_of(size) {
+        return Err(Error::invalid_param(format!(
+            "accumulate = {accumulate} batches of a step cannot be divided among {size} processes; set it to a multiple of {size}"
+        )));
+    }
     let _heap = KeptHeap::new();
-    let mut training = Training::new(objective, network, params, dataset, job)?;
+    let mut training = Training::new(network, params, dataset, job)?;
     let done = training.run(validate);
     job.progress.end();
     done?;
@@ -100,19 +125,34 @@ enum Halt {
     Done,
 }
 
-struct Training<'a, O: Objective> {
-    objective: &'a O,
+/// What is logged and reported of a batch.
+struct LastBatch {
+    indices: Vec<usize>,
+    parts: Vec<(&'static str, Tensor<1>)>,
+}
+
+struct Training<'a> {
+    network: &'a mut dyn TrainedNetwork,
     params: &'a TrainingParams,
     dataset: &'a dyn DatasetIterator,
     job: &'a FitJob<'a>,
     /// Device that records gradients.
     device: Device,
-    network: Option<O::Network>,
-    average: Option<Average<O::Network>>,
     optimizer: ModuleOptimizer,
-    gradients: GradientsAccumulator<O::Network>,
-    /// Number of batches whose gradients are accumulated.
-    accumulated: usize,
+    /// Device of gradients.
+    gradient_device: Device,
+    /// Number of batches and of optimiser steps of an epoch.
+    batches_per_epoch: usize,
+    steps_per_epoch: usize,
+    /// Number of the step within the epoch.
+    step_of_epoch: usize,
+    sum: StepSum,
+    /// Running statistics of batch normalisation before the step; empty where a step has one batch.
+    statistics: Vec<Vec<f32>>,
+    /// Batches of the step for the other processes of a group.
+    sent: Vec<u8>,
+    /// The last batch of this process.
+    last: Option<LastBatch>,
     schedule: Schedule,
     checkpoints: Checkpoints,
     log: RunLog,
@@ -132,15 +172,15 @@ fn batch_size(params: &TrainingParams, dataset: &dyn DatasetIterator) -> usize {
     params.batch_size.min(dataset.len())
 }
 
-impl<'a, O: Objective> Training<'a, O> {
+impl<'a> Training<'a> {
     fn new(
-        objective: &'a O,
-        network: O::Network,
+        network: &'a mut dyn TrainedNetwork,
         params: &'a TrainingParams,
         dataset: &'a dyn DatasetIterator,
         job: &'a FitJob<'a>,
     ) -> Result<Self> {
-        let device = training_device(job.device)?.autodiff();
+        let gradient_device = training_device(job.device)?;
+        let device = gradient_device.clone().autodiff();
         let checkpoints = Checkpoints::new(&job.output.join(CHECKPOINTS), params.checkpoints_kept)?;
         let setting = Setting { samples: dataset.len(), params: params.to_map() };
         let batches = (dataset.len() / batch_size(params, dataset)) as u64;
@@ -148,16 +188,20 @@ impl<'a, O: Objective> Training<'a, O> {
         let all = per_epoch * params.epochs as u64;
         let steps = if params.max_steps == 0 { all } else { all.min(params.max_steps) };
         let mut training = Self {
-            objective,
+            network,
             params,
             dataset,
             job,
-            average: (params.ema > 0.0).then(|| Average::new(network.valid(), params.ema)),
-            network: Some(network.to_device(&device).train()),
             device,
             optimizer: optimizer(params),
-            gradients: GradientsAccumulator::new(),
-            accumulated: 0,
+            gradient_device,
+            batches_per_epoch: batches as usize,
+            steps_per_epoch: per_epoch as usize,
+            step_of_epoch: 0,
+            sum: StepSum::default(),
+            statistics: Vec::new(),
+            sent: Vec::new(),
+            last: None,
             schedule: Schedule::new(params, steps, per_epoch),
             checkpoints,
             log: RunLog::open(None, None)?,
@@ -171,6 +215,7 @@ impl<'a, O: Objective> Training<'a, O> {
             halt: None,
         };
         training.resume()?;
+        training.check_group()?;
         let resumed = (training.state.step > 0).then_some(training.state.step);
         training.log = RunLog::open(job.logging_path, resumed)?;
         Ok(training)
@@ -189,26 +234,57 @@ impl<'a, O: Objective> Training<'a, O> {
         }
     }
 
+    /// Returns the checkpoint of process 0, which the others save as theirs.
+    fn checkpoint_of_group(
+        &self,
+        group: &dyn TrainingGroup,
+        own: Option<Checkpoint>,
+    ) -> Result<Option<Checkpoint>> {
+        if group.rank() == 0 {
+            group.all_gather(own.as_ref().map_or_else(|| Ok(Vec::new()), checkpoint_bytes)?)?;
+            return Ok(own);
+        }
+        let all = group.all_gather(Vec::new())?;
+        let Some(bytes) = all.first().filter(|bytes| !bytes.is_empty()) else { return Ok(None) };
+        save_checkpoint(&self.checkpoints, bytes)?;
+        self.checkpoints.latest()
+    }
+
+    /// Checks that all processes of a group train the same.
+    fn check_group(&self) -> Result<()> {
+        let Some(group) = self.job.group else { return Ok(()) };
+        let TrainingState { setting, step, .. } = &self.state;
+        let own = serde_json::to_vec(&(setting, step))
+            .map_err(|error| Error::internal("the parameters of the training").with_source(error))?;
+        let all = group.all_gather(own.clone())?;
+        match all.iter().position(|other| *other != own) {
+            Some(rank) => Err(Error::invalid_input(format!(
+                "process {rank} of the training has other data, parameters or checkpoints than process {}",
+                group.rank()
+            ))),
+            None => Ok(()),
+        }
+    }
+
     /// Resumes from the last checkpoint, where the job requests it and there is one.
     fn resume(&mut self) -> Result<()> {
-        let Some(checkpoint) = self.checkpoints.latest()? else { return Ok(()) };
-        if !self.job.resume {
+        let own = self.checkpoints.latest()?;
+        if let (Some(checkpoint), false) = (&own, self.job.resume) {
             return Err(Error::invalid_input(format!(
                 "{} contains a training interrupted at step {}; resume it, or use another folder",
                 self.job.output.display(),
                 checkpoint.step
             )));
         }
+        let Some(checkpoint) = (match self.job.group {
+            Some(group) => self.checkpoint_of_group(group, own)?,
+            None => own,
+        }) else {
+            return Ok(());
+        };
         let saved = Saved::read(&checkpoint)?;
         saved.state.setting.check(&self.state.setting)?;
-        let (Some(network), device) = (self.network.take(), &self.device) else {
-            return Err(Error::internal("the training has no network"));
-        };
-        self.network = Some(saved.network_into(network.valid())?.to_device(device).train());
-        if let Some(average) = self.average.take() {
-            let network = saved.average_into(average.network().clone())?;
-            self.average = Some(Average::new(network, self.params.ema));
-        }
+        self.network.load(&saved, &self.device)?;
         self.optimizer = saved.optimizer_into(optimizer(self.params))?;
         let setting = std::mem::take(&mut self.state.setting);
         self.state = TrainingState { setting, ..saved.state };
@@ -225,7 +301,12 @@ impl<'a, O: Objective> Training<'a, O> {
         self.job.progress.advance_resumed(self.state.step);
         while self.state.epoch < self.params.epochs as u64 && self.halt.is_none() {
             let (epoch, position) = (self.state.epoch, self.state.position);
+            self.step_of_epoch = position / loader.options().batch_size / self.params.accumulate;
             let skipped = loader.for_each(epoch, position, |batch| self.batch(batch))?;
+            // Steps without a batch of this process.
+            while self.halt.is_none() && self.step_of_epoch < self.steps_per_epoch {
+                self.finish_step()?;
+            }
             if let (Some(first), 0) = (skipped.first(), epoch) {
                 self.job.progress.note(&format!(
                     "{} samples are skipped; the first is {}: {}",
@@ -241,87 +322,153 @@ impl<'a, O: Objective> Training<'a, O> {
         self.finish(validate)
     }
 
-    fn loader(&self, options: LoaderOptions) -> Result<Loader<'a, O::Collate>> {
-        let loader = Loader::new(self.dataset, options)?.augment(self.objective.pipeline()?);
-        Ok(loader.collate(self.objective.collate()?))
+    fn loader(&self, options: LoaderOptions) -> Result<Loader<'a, AnyCollate>> {
+        let (pipeline, collate) = self.network.preparation()?;
+        let loader = Loader::new(self.dataset, options)?.augment(pipeline).collate(collate);
+        match self.job.group {
+            Some(group) => loader.share(group.rank(), group.size()),
+            None => Ok(loader),
+        }
     }
 
     /// Runs a forward and backward pass of a few samples on a copy of the network, without side effects.
     fn trial_step(&self) -> Result<()> {
         let options = LoaderOptions { batch_size: TRIAL_SAMPLES, threads: 0, ..self.loader_options() };
-        let loader = self.loader(options)?;
-        let Some(network) = &self.network else {
-            return Err(Error::internal("the training has no network"));
-        };
-        let network = network.valid().to_device(&self.device).train();
-        let tried = loader.for_each(0, 0, |batch| {
-            let loss = self.objective.loss(&network, &batch.content, &self.device)?;
-            drop(loss.total.backward());
+        let tried = self.loader(options)?.for_each(0, 0, |batch| {
+            self.network.try_step(&*batch.content, &self.device)?;
             Ok(ControlFlow::Break(()))
         });
         tried.map(drop)
     }
 
-    /// Processes one batch, and runs an optimiser step once enough gradients are accumulated.
-    fn batch(&mut self, batch: Batch<<O::Collate as Collate>::Batch>) -> Result<ControlFlow<()>> {
+    /// Processes one batch, and runs an optimiser step after the last one of a step.
+    fn batch(&mut self, batch: Batch<AnyBatch>) -> Result<ControlFlow<()>> {
+        let batch_size = batch_size(self.params, self.dataset);
+        let number = (batch.next_position / batch_size).saturating_sub(1);
+        while self.step_of_epoch < number / self.params.accumulate && self.halt.is_none() {
+            self.finish_step()?;
+        }
         if self.state.step >= self.steps {
             self.halt = Some(Halt::Done);
+        }
+        if self.halt.is_some() {
             return Ok(ControlFlow::Break(()));
         }
-        let Some(network) = self.network.take() else {
-            return Err(Error::internal("the training has no network"));
-        };
+        let has_several = self.params.accumulate > 1 || self.job.group.is_some();
+        if has_several && self.statistics.is_empty() {
+            self.statistics = self.running_statistics()?;
+        }
         // Dropout depends on the position alone, so that a resumed training repeats it.
         let place = [self.params.seed, NETWORK, batch.epoch, batch.next_position as u64];
         self.device.seed(Random::from_key(place).bits());
-        let loss = self.objective.loss(&network, &batch.content, &self.device)?;
-        let value = scalar(loss.total.clone());
-        if !value.is_finite() {
-            return Err(self.non_finite("loss", value, &batch.indices));
+        let Loss { total, parts } = self.network.loss(&*batch.content, &self.device)?;
+        let loss = scalar(total.clone());
+        if !loss.is_finite() {
+            return Err(self.non_finite("loss", loss, &batch.indices));
         }
         let share = 1.0 / self.params.accumulate as f64;
-        let gradients = GradientsParams::from_grads((loss.total * share).backward(), &network);
-        self.gradients.accumulate(&network, gradients);
-        self.accumulated += 1;
-        self.images += batch.indices.len() as u64;
-        self.state.loss_sum += value;
-        self.state.batches += 1;
-        self.state.position = batch.next_position;
-        let last = self.dataset.len() - batch.next_position < self.params.batch_size;
-        self.network = Some(if self.accumulated == self.params.accumulate || last {
-            self.step(network, &batch.indices)?
-        } else {
-            network
-        });
-        if self.accumulated == 0 {
-            self.after_step(value, &loss.parts)?;
+        let mut result = BatchResult {
+            number: number % self.params.accumulate,
+            samples: batch.indices.len(),
+            loss,
+            statistics: Vec::new(),
+            gradients: NetworkGradients::new(self.network.module()?, (total * share).backward()),
+        };
+        // Each batch of a step begins with the same statistics, so that their result does not depend on who processes them.
+        if has_several {
+            result.statistics = self.running_statistics()?;
+            self.network.set_statistics(&self.statistics)?;
         }
-        if self.job.progress.stopped() && self.accumulated == 0 {
-            self.halt = Some(Halt::Stopped);
-            return Ok(ControlFlow::Break(()));
+        match self.job.group {
+            Some(_) => result.write(&mut self.sent),
+            None => self.sum.add(result),
         }
-        Ok(ControlFlow::Continue(()))
+        self.last = Some(LastBatch { indices: batch.indices, parts });
+        let end = ((self.step_of_epoch + 1) * self.params.accumulate).min(self.batches_per_epoch);
+        if number + self.job.group.map_or(1, TrainingGroup::size) >= end {
+            self.finish_step()?;
+        }
+        Ok(if self.halt.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
 
-    fn step(&mut self, network: O::Network, indices: &[usize]) -> Result<O::Network> {
-        let mut gradients = self.gradients.grads();
-        self.accumulated = 0;
+    /// Ends a step of the epoch: adds the batches of the other processes, and changes the weights where there were batches.
+    fn finish_step(&mut self) -> Result<()> {
+        if self.state.step >= self.steps {
+            self.halt = Some(Halt::Done);
+            return Ok(());
+        }
+        let stopped = match self.job.group {
+            Some(group) => self.add_batches_of_group(group)?,
+            None => false,
+        };
+        self.step_of_epoch += 1;
+        let end = (self.step_of_epoch * self.params.accumulate).min(self.batches_per_epoch);
+        self.state.position = end * batch_size(self.params, self.dataset);
+        let sum = std::mem::take(&mut self.sum);
+        let last = self.last.take();
+        let statistics = std::mem::take(&mut self.statistics);
+        let Some(&loss) = sum.losses.last() else { return Ok(()) };
+        self.state.loss_sum = sum.losses.iter().fold(self.state.loss_sum, |sum, loss| sum + loss);
+        self.state.batches += sum.losses.len() as u64;
+        self.images += sum.samples as u64;
+        if !statistics.is_empty() {
+            self.network.set_statistics(&sum.statistics())?;
+        }
+        self.step(sum.gradients, last.as_ref().map_or(&[][..], |last| &last.indices))?;
+        self.after_step(loss, last.as_ref().map_or(&[][..], |last| &last.parts))?;
+        // Processes of a group stop at the same step.
+        if stopped || (self.job.group.is_none() && self.job.progress.stopped()) {
+            self.halt = Some(Halt::Stopped);
+        }
+        Ok(())
+    }
+
+    /// Sums the batches of all processes of the group in their order. Returns whether the user of one of them stops the training.
+    fn add_batches_of_group(&mut self, group: &dyn TrainingGroup) -> Result<bool> {
+        let mut own = vec![u8::from(self.job.progress.stopped())];
+        own.append(&mut self.sent);
+        if self.statistics.is_empty() {
+            self.statistics = self.running_statistics()?;
+        }
+        let network = self.network.module()?;
+        let (mut batches, mut stopped) = (Vec::new(), false);
+        for payload in group.all_gather(own)? {
+            let mut bytes = payload.as_slice();
+            stopped |= take(&mut bytes)? != [0];
+            while !bytes.is_empty() {
+                batches.push(BatchResult::read(
+                    network,
+                    &self.gradient_device,
+                    &self.statistics,
+                    &mut bytes,
+                )?);
+            }
+        }
+        batches.sort_by_key(|batch| batch.number);
+        batches.into_iter().for_each(|batch| self.sum.add(batch));
+        Ok(stopped)
+    }
+
+    /// Returns the running statistics of batch normalisation.
+    fn running_statistics(&self) -> Result<Vec<Vec<f32>>> {
+        self.network.settle_statistics()?;
+        Ok(running_statistics(self.network.module()?))
+    }
+
+    fn step(&mut self, mut gradients: NetworkGradients, indices: &[usize]) -> Result<()> {
         if self.params.grad_clip > 0.0 {
-            let norm = gradient_norm(&network, &gradients);
+            let norm = gradients.norm();
             if !norm.is_finite() {
                 return Err(self.non_finite("gradient", norm, indices));
             }
             if norm > self.params.grad_clip {
-                gradients = scaled(&network, gradients, self.params.grad_clip / norm);
+                gradients.scale(self.params.grad_clip / norm);
             }
         }
-        let lr = self.schedule.lr(self.state.step);
-        let network = self.optimizer.step(lr, network, gradients);
+        let gradients = gradients.into_params(self.network.module()?);
+        self.network.step(&mut self.optimizer, self.schedule.lr(self.state.step), gradients)?;
         self.state.step += 1;
-        if let Some(average) = self.average.take() {
-            self.average = Some(average.update(&network.valid(), self.state.step));
-        }
-        Ok(network)
+        self.network.update_average(self.params.ema, self.state.step)
     }
 
     /// Logs, reports progress and saves a checkpoint where due.
@@ -365,16 +512,23 @@ impl<'a, O: Objective> Training<'a, O> {
         (self.state.position, self.state.loss_sum, self.state.batches) = (0, 0.0, 0);
         let last = self.state.epoch == self.params.epochs as u64 || self.state.step >= self.steps;
         let due = self.state.epoch.is_multiple_of(self.params.val_after as u64) || last;
-        match validate {
-            Some(validate) if due => self.validate(validate),
-            _ => Ok(()),
+        if let (Some(validate), true) = (validate, due) {
+            self.validate(validate)?;
         }
+        // Process 0 validates, and may end the training.
+        if let Some(group) = self.job.group {
+            let ends = group.all_gather(vec![u8::from(self.halt.is_some())])?;
+            if ends.iter().any(|end| *end != [0]) {
+                self.halt = Some(Halt::Done);
+            }
+        }
+        Ok(())
     }
 
     /// Validates the current network and keeps the best one.
     fn validate(&mut self, validate: &mut Validate<'_>) -> Result<()> {
         let candidate = self.job.output.join(CANDIDATE);
-        self.container()?.write(&candidate)?;
+        self.network.container()?.write(&candidate)?;
         let Score { name, value, is_error, numbers, image: picture } = validate(&candidate)?;
         // The evaluation used the progress bar.
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
@@ -392,7 +546,7 @@ impl<'a, O: Objective> Training<'a, O> {
         if self.state.best.as_ref().is_none_or(better) {
             self.state.best = Some(Best { value, step });
             self.state.since_best = 0;
-            self.container()?.write(&self.job.model())?;
+            self.network.container()?.write(&self.job.model())?;
         } else {
             self.state.since_best += 1;
         }
@@ -409,7 +563,7 @@ impl<'a, O: Objective> Training<'a, O> {
     fn finish(&mut self, validate: Option<Validate<'_>>) -> Result<()> {
         self.save()?;
         if self.state.best.is_none() || validate.is_none() {
-            self.container()?.write(&self.job.model())?;
+            self.network.container()?.write(&self.job.model())?;
         }
         let candidate = self.job.output.join(CANDIDATE);
         if candidate.exists() {
@@ -434,25 +588,16 @@ impl<'a, O: Objective> Training<'a, O> {
         self.log.flush()
     }
 
-    /// Returns the container of the network: of the average where there is one.
-    fn container(&self) -> Result<Container> {
-        match (&self.average, &self.network) {
-            (Some(average), _) => self.objective.container(average.network()),
-            (None, Some(network)) => self.objective.container(&network.valid()),
-            (None, None) => Err(Error::internal("the training has no network")),
-        }
-    }
-
     fn save(&mut self) -> Result<()> {
+        if self.job.group.is_some_and(|group| group.rank() > 0) {
+            return Ok(());
+        }
         self.state.seconds = self.earlier_seconds + self.started_at.elapsed().as_secs_f64();
-        let Some(network) = &self.network else {
-            return Err(Error::internal("the training has no network"));
-        };
-        let average = self.average.as_ref().map(Average::network);
         // Rows before the checkpoint are not written again by a resumed training.
         self.log.flush()?;
-        let saved = Saved::files(&self.state, network.valid(), average, &self.optimizer)?;
-        let files: Vec<_> = saved.iter().map(|(name, bytes)| (*name, bytes.as_slice())).collect();
+        let (state, network) = (state_files(&self.state, &self.optimizer)?, self.network.files()?);
+        let files: Vec<_> =
+            state.iter().chain(&network).map(|(name, bytes)| (*name, bytes.as_slice())).collect();
         self.checkpoints.save(self.state.step, &files)?;
         self.saved_at = Instant::now();
         Ok(())

@@ -14,13 +14,14 @@ use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
 use opendr::{Error, JsonFormat, Pipeline, Progress, Result};
+use serde_json::json;
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
 use crate::viewed_environment::ViewedSource;
 use crate::{
-    class_flags, dataset_flags, environment_flags, learner_flags, loading, named_value, report_file, stdout,
-    then_flag, viewing,
+    class_flags, cluster, dataset_flags, environment_flags, learner_flags, loading, named_value, report_file,
+    stdout, then_flag, viewing,
 };
 
 const EXAMPLES: &str = "\
@@ -35,6 +36,7 @@ Examples:
   opendr eval ppo --env CartPole-v1 --view                     ... with its episodes on a web page
   opendr eval residual_ppo --model runs/mine/model             prior, policy and both on the same episodes
   opendr eval active_face_recognition --model MODEL --episodes 500   a moving camera, beside baselines
+  opendr eval LEARNER coco/ --ray auto                         on the workers of a Ray cluster
   opendr eval td3/quad_track --env QuadTrack-v1 --online       ... adapted in flight, beside frozen and conventional
 
 An interrupted evaluation with --out resumes when the same command runs again.";
@@ -62,6 +64,7 @@ pub fn grammar() -> Command {
                 .help("Stop after the first N samples"),
         )
         .arg(viewing::flag())
+        .arg(cluster::flag(&["view", "then", "online"]))
         .args(super::online::flags())
         .args(loading::flags())
         .after_help(EXAMPLES)
@@ -103,6 +106,12 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         return in_environment(spec, entry, matches, &bar);
     }
     if environment_flags::is_active(entry) {
+        if cluster::address(matches).is_some() {
+            return Err(Error::unsupported(format!(
+                "{} is not evaluated on a cluster; leave out --ray",
+                entry.spec.name
+            )));
+        }
         return active::run(spec, entry, matches, &bar);
     }
     if super::online::is_online(matches) {
@@ -124,6 +133,24 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     };
     let last = then_flag::last(entry, matches)?;
     options.metric_params = metric_params(options.metric_for(last)?, matches)?;
+    if let Some(address) = cluster::address(matches) {
+        let call = json!({
+            "dataset": dataset_flags::described(matches),
+            "options": {
+                "metric": options.metric,
+                "metric_params": options.metric_params,
+                "split": options.split,
+                "limit": options.limit,
+                "out": options.out,
+                "skip_broken": options.skip_broken,
+                "classes": options.classes,
+                "by_number": options.by_number,
+                "resamples": options.resamples,
+            },
+            "learner": on_cluster(spec, entry, matches, &bar)?,
+        });
+        return cluster::run("eval", address, Evaluated::FORMAT, matches, call);
+    }
     let external = dataset_flags::external(matches);
     let viewer = viewing::of_items(last.spec.class, matches, &bar)?;
     let observer = viewer.as_ref().map(|viewer| {
@@ -152,6 +179,17 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     print_outcome(&outcome, matches, &job.problems, &bar)
 }
 
+/// Returns the description of a learner for a cluster.
+fn on_cluster(
+    spec: &str,
+    entry: &'static Entry,
+    matches: &ArgMatches,
+    bar: &ProgressBar,
+) -> Result<serde_json::Value> {
+    let model = loading::model(spec, matches, bar)?;
+    Ok(json!({ "name": entry.spec.name, "model": model, "params": learner_flags::params(entry, matches)? }))
+}
+
 /// Evaluates a policy in the named environment, or in the one it was trained in.
 fn in_environment(
     spec: &str,
@@ -167,6 +205,15 @@ fn in_environment(
     }
     if let Some(seed) = matches.get_one::<u64>("first-seed") {
         protocol.first_seed = *seed;
+    }
+    if let Some(address) = cluster::address(matches) {
+        let call = json!({
+            "environment": [source.id(), source.params()],
+            "episodes": protocol.episodes,
+            "first_seed": protocol.first_seed,
+            "learner": on_cluster(spec, entry, matches, bar)?,
+        });
+        return cluster::run("eval", address, POLICY_REPORT, matches, call);
     }
     let viewer = viewing::of_items(entry.spec.class, matches, bar)?;
     let mut environment = ViewedSource::new(&source, viewer).make()?;

@@ -7,10 +7,13 @@ use opendr::dataset::{DatasetRef, ExternalDataset};
 use opendr::evaluation::Teacher;
 use opendr::params::ParamMap;
 use opendr::{FitData, FitEnvironments, FitOptions, Fitted, Progress, Result};
+use serde_json::json;
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
-use crate::{class_flags, curves, dataset_flags, environment_flags, learner_flags, loading, stdout, viewing};
+use crate::{
+    class_flags, cluster, curves, dataset_flags, environment_flags, learner_flags, loading, stdout, viewing,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -22,6 +25,7 @@ Examples:
   opendr fit ppo --env CartPole-v1                             train a policy in an environment
   opendr fit act pushes/                                       imitate demonstrations (opendr sim record)
   opendr fit active_face_recognition --env SphereView-Face-v1  train a recogniser and the camera's motion
+  opendr fit LEARNER coco/ --accumulate 8 --ray auto           divide each step among the workers of a Ray cluster
   opendr fit LEARNER --help                                    list the learner's flags, such as --epochs
 
 Without --out the output folder is runs/LEARNER-DATE; --resume without it uses the last of these. The trained model is in
@@ -39,6 +43,7 @@ pub fn grammar() -> Command {
         .args(val_flags())
         .args(output_flags())
         .args(teacher_flags())
+        .arg(cluster::flag(&["view", "teacher", "val-format"]))
         .arg(
             Arg::new("limit")
                 .long("limit")
@@ -141,10 +146,32 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let params = learner_flags::params(entry, matches)?;
     let device = loading::device(matches)?;
     let options = options(entry.spec.name, learner_flags::fit_params(entry, matches)?, matches)?;
-    let curves = curves::of_training(options.logging_path.clone().unwrap_or_default());
-    let _viewer = viewing::of_curves(entry.spec.class, curves, matches, &bar)?;
     let starts_from_model =
         spec.contains('/') || matches.contains_id("model") || matches.get_flag("pretrained");
+    if let Some(address) = cluster::address(matches) {
+        let model = match starts_from_model {
+            true => Some(loading::model(spec, matches, &bar)?),
+            false => None,
+        };
+        let call = json!({
+            "dataset": dataset_flags::described(matches),
+            "val_dataset": matches.get_one::<PathBuf>("val"),
+            "options": {
+                "params": options.params,
+                "split": options.split,
+                "val_split": options.val_split,
+                "limit": options.limit,
+                "out": options.out,
+                "logging_path": options.logging_path,
+                "resume": options.resume,
+                "skip_broken": options.skip_broken,
+            },
+            "learner": { "name": entry.spec.name, "model": model, "params": params },
+        });
+        return cluster::run("fit", address, Fitted::FORMAT, matches, call);
+    }
+    let curves = curves::of_training(options.logging_path.clone().unwrap_or_default());
+    let _viewer = viewing::of_curves(entry.spec.class, curves, matches, &bar)?;
     let fits = entry.capabilities.fit || entry.capabilities.fit_in;
     let mut learner = match starts_from_model && fits {
         true => loading::load(spec, &params, matches, &bar)?,
@@ -180,6 +207,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         dataset: DatasetRef::External(&external),
         val_dataset: val.as_ref().map(DatasetRef::External),
         teacher: word(matches, "teacher").map(|teacher| load_teacher(&teacher, matches, &bar)).transpose()?,
+        group: None,
     };
     let fitted = opendr::fit(learner.as_mut(), entry, data, &options, &bar)?;
     print_fitted(&fitted, matches, &bar)

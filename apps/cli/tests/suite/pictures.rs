@@ -241,6 +241,33 @@ fn bench_measures_every_stage() {
     }
     assert!(report["frames_per_second"].as_f64().unwrap() > 0.0);
     assert!(!cfg!(target_os = "linux") || report["peak_memory_mb"].as_f64().unwrap() > 1.0);
+    assert!(report["layers"].is_null());
     let drawn = place.run(["bench", LEARNER, "--frames", "2", "--offline"]).ends_with(0);
     assert!(drawn.stdout.contains("2 frames of 1920x1080 (drawn)"), "{}", drawn.stdout);
+}
+
+#[test]
+fn bench_profiles_the_layers_of_networks() {
+    let Some((place, data)) = Place::with_data() else { return };
+    let photo = data.join("data/photos/zidane.jpg");
+    let trace = place.path("trace.json");
+    let flags = ["--frames", "3", "--warmup", "1", "--threads", "1", "--quiet", "--layers", "--trace"];
+    let flags: Vec<&str> = flags.into_iter().chain([trace.to_str().unwrap()]).collect();
+    let arguments = ["bench", LEARNER, photo.to_str().unwrap()];
+    let run = |more: &[&str]| {
+        let mut command = place.command(arguments.iter().chain(&flags).chain(more));
+        command.env("OPENDR_RUNTIME", "builtin");
+        place.start(command).finish().ends_with(0)
+    };
+    let report: Value = serde_json::from_str(&run(&["--json"]).stdout).unwrap();
+    let layers = report["layers"]["layers"].as_array().unwrap();
+    let sum: f64 = layers.iter().map(|layer| layer["ms"].as_f64().unwrap()).sum();
+    assert!((sum - report["layers"]["ms"].as_f64().unwrap()).abs() < 1e-6, "{sum}");
+    let convolution = layers.iter().find(|layer| layer["operator"] == "Conv").unwrap();
+    assert!(convolution["gflops"].as_f64().unwrap() > 0.0, "{convolution}");
+    let events: Value = serde_json::from_slice(&fs::read(&trace).unwrap()).unwrap();
+    let calls = events["traceEvents"].as_array().unwrap().iter().filter(|event| event["name"] == "call");
+    assert_eq!(calls.count(), 3);
+    let text = run(&[]).stdout;
+    assert!(text.contains("GFLOP/s") && text.contains("Conv"), "{text}");
 }

@@ -11,6 +11,7 @@ import io
 import json
 import os
 import tempfile
+import time
 import zipfile
 from collections import deque
 from collections.abc import Iterable, Iterator
@@ -26,7 +27,7 @@ RayAddress = Union[bool, str]
 #: Parts for each worker: a slow one holds up the others by one part at most.
 _PARTS_PER_WORKER = 4
 #: Runs of a part: a part that ends three workers ends the evaluation.
-_RETRIES = 2
+RETRIES = 2
 #: Inputs of an inference in one task.
 _BATCH = 16
 #: Name of the file of predictions in the folder of an evaluation.
@@ -63,15 +64,15 @@ class SentLearner(NamedTuple):
     model: Optional[bytes]
 
     @classmethod
-    def of(cls, learner: Any) -> SentLearner:
-        """Packs a learner of the registry."""
+    def of(cls, learner: Any, needs_model: bool = True) -> SentLearner:
+        """Packs a learner of the registry, with its model if it has one."""
         packed = io.BytesIO()
         with tempfile.TemporaryDirectory() as folder:
             place = Path(folder, "model")
             try:
                 learner.save(place)
             except FileNotFoundError:
-                if not learner.is_ready:
+                if needs_model and not learner.is_ready:
                     raise
             with zipfile.ZipFile(packed, "w") as archive:
                 for file in sorted(place.rglob("*")):
@@ -113,27 +114,42 @@ def _eval_part(
     return lines
 
 
+def _policy_part(key: str, sent: SentLearner, env: Any, episodes: int, first_seed: int) -> str:
+    part: str = _learner(key, sent)._handle.eval_in_part(env, episodes, first_seed)
+    return part
+
+
 def _infer_batch(key: str, sent: SentLearner, inputs: list[dict[str, Any]], arguments: dict[str, Any]) -> list[Any]:
     learner = _learner(key, sent)
     return [learner.infer(**ports, **arguments) for ports in inputs]
+
+
+def task_options(ray: Any, given: dict[str, Any]) -> dict[str, Any]:
+    """Returns the options of a task, whose learner has as many threads as the task has cores, by default one."""
+    options = {"num_cpus": 1, **given}
+    count = str(max(1, int(options["num_cpus"])))
+    threads = {"OPENDR_THREADS": count, "RAYON_NUM_THREADS": count}
+    # A task has either its own environment or that of the job.
+    job = ray.get_runtime_context().runtime_env
+    environment = {**job, **options.pop("runtime_env", {})}
+    environment["env_vars"] = {**threads, **job.get("env_vars", {}), **environment.get("env_vars", {})}
+    return {**options, "runtime_env": environment}
+
+
+def workers(ray: Any, options: dict[str, Any]) -> int:
+    """Returns the number of tasks that run at a time."""
+    return max(1, int(ray.cluster_resources().get("CPU", 1) / max(options["num_cpus"], 1e-3)))
 
 
 class Cluster:
     """A learner on the workers of a connected cluster."""
 
     def __init__(self, ray: Any, learner: Any, ray_options: Optional[dict[str, Any]]) -> None:
-        given = {"max_retries": _RETRIES, "num_cpus": 1, **(ray_options or {})}
-        threads = {"OPENDR_THREADS": str(max(1, int(given["num_cpus"])))}
-        # A task has either its own environment or that of the job.
-        job = ray.get_runtime_context().runtime_env
-        environment = {**job, **given.pop("runtime_env", {})}
-        environment["env_vars"] = {**threads, **job.get("env_vars", {}), **environment.get("env_vars", {})}
         self._ray = ray
-        self._options = {**given, "runtime_env": environment}
+        self._options = task_options(ray, {"max_retries": RETRIES, **(ray_options or {})})
         self._sent = ray.put(SentLearner.of(learner))
         self._key = os.urandom(16).hex()
-        #: Number of tasks that run at a time.
-        self.workers = max(1, int(ray.cluster_resources().get("CPU", 1) / max(given["num_cpus"], 1e-3)))
+        self.workers = workers(ray, self._options)
 
     def map(self, function: Any, calls: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
         """Yields the results of a function of the learner, in the order of the calls; an exception ends it."""
@@ -152,10 +168,15 @@ class Cluster:
                     self._ray.cancel(reference)
 
     def _result(self, reference: Any) -> Any:
-        try:
-            return self._ray.get(reference)
-        except self._ray.exceptions.RayTaskError as error:
-            raise (error.cause if isinstance(error.cause, Exception) else error) from None
+        return result(self._ray, reference)
+
+
+def result(ray: Any, reference: Any) -> Any:
+    """Returns the result of a task, or raises its exception."""
+    try:
+        return ray.get(reference)
+    except ray.exceptions.RayTaskError as error:
+        raise (error.cause if isinstance(error.cause, Exception) else error) from None
 
 
 def evaluate(
@@ -187,6 +208,30 @@ def evaluate(
                 file.flush()
         outcome: tuple[str, str] = handle.eval(dataset, whole, False)
         return outcome
+
+
+def evaluate_policy(
+    learner: Any,
+    env: Any,
+    episodes: int,
+    first_seed: int,
+    where: RayAddress,
+    ray_options: Optional[dict[str, Any]],
+    verbose: bool,
+) -> tuple[str, str]:
+    """Evaluates a policy on the cluster; returns the report as JSON and as text."""
+    begun = time.monotonic()
+    with connected(where, "an evaluation") as ray:
+        cluster = Cluster(ray, learner, ray_options)
+        size = max(1, -(-episodes // (cluster.workers * _PARTS_PER_WORKER)))
+        firsts = range(0, episodes, size)
+        calls = ((env, min(size, episodes - first), first_seed + first) for first in firsts)
+        results = cluster.map(_policy_part, calls)
+        if verbose:
+            results = with_progress(results, "evaluating", len(firsts))
+        parts = list(results)
+    joined: tuple[str, str] = learner._handle.eval_joined(parts, time.monotonic() - begun)
+    return joined
 
 
 def _predicted(path: Path) -> tuple[Optional[str], int]:

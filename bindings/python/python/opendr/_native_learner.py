@@ -7,6 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
+from opendr._errors import Unsupported
 from opendr._input_value import DatasetLike, PathLike
 from opendr._native_base import NativeBase
 from opendr._older_names import under_older_name
@@ -106,6 +107,8 @@ class NativeLearner(NativeBase, Learner):
         teacher_by_number: bool = False,
         keep_empty: bool = False,
         skip_broken: bool = False,
+        ray: Union[bool, str] = False,
+        ray_options: Optional[dict[str, Any]] = None,
         **fit_params: Any,
     ) -> dict[str, Any]:
         """Trains the learner, from the loaded model if there is one, and loads the result.
@@ -134,6 +137,11 @@ class NativeLearner(NativeBase, Learner):
             teacher_by_number: Whether the teacher's class indices are taken as they are, regardless of the names.
             keep_empty: Whether images without a prediction of the teacher are kept, as negative examples.
             skip_broken: Whether broken samples are skipped and listed, instead of raising.
+            ray: Whether workers of a Ray cluster compute a part of the batches of each step: True for the connected one or one
+                of this machine, or an address (``"auto"`` for the running one). A step has ``accumulate`` batches; as many
+                processes train as divide them and have cores. The weights are those of one process with the same parameters,
+                bit for bit. The data set must be at the same path on all machines.
+            ray_options: Resources of a process on Ray, such as ``{"num_cpus": 2}``; by default one core.
             fit_params: Parameters of the training (docs/learners.md); by default those of the constructor.
 
         Returns:
@@ -163,7 +171,14 @@ class NativeLearner(NativeBase, Learner):
             "skip_broken": skip_broken,
         }
         given = None if isinstance(teacher, str) else _teacher(teacher)
-        report, text = self._handle.fit(dataset, val_dataset, given, json.dumps(options), silent)
+        if ray:
+            from opendr import _cluster_fit
+
+            if teacher is not None:
+                raise Unsupported("a training on Ray takes annotations; write the teacher's with one process first")
+            report, text = _cluster_fit.fit(self, dataset, val_dataset, options, ray, ray_options, silent)
+        else:
+            report, text = self._handle.fit(dataset, val_dataset, given, json.dumps(options), silent)
         vars(self).update(self._handle.params())
         if verbose and not silent:
             print(text, end="")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 from opendr import _opendr
 from opendr._errors import Unsupported
@@ -81,6 +81,8 @@ class NativeLearnerActive(NativeLearnerRL):
         episodes: int = 500,
         first_seed: int = 5_000_000,
         verbose: bool = False,
+        ray: Union[bool, str] = False,
+        ray_options: Optional[dict[str, Any]] = None,
     ) -> dict[str, Any]:
         """Evaluates the camera policy beside baselines on episodes with fixed seeds.
 
@@ -90,6 +92,8 @@ class NativeLearnerActive(NativeLearnerRL):
             episodes: Number of episodes; episode ``i`` has the seed ``first_seed + i``.
             first_seed: Seed of the first episode.
             verbose: Whether to show progress.
+            ray: Not supported by camera policies.
+            ray_options: Not supported by camera policies.
 
         Returns:
             For each of ``static``, ``random``, ``orbit``, ``greedy``, ``policy`` and ``oracle`` a dictionary with ``accuracy``
@@ -98,7 +102,10 @@ class NativeLearnerActive(NativeLearnerRL):
         Raises:
             FileNotFoundError: No model is loaded.
             ValueError: The environment has other spaces.
+            opendr.Unsupported: ``ray`` is given.
         """
+        if ray or ray_options:
+            raise Unsupported("camera policies are evaluated on one machine, not on Ray")
         given = self._environments(env, env_params)
         report = json.loads(self._handle.eval_active(given, episodes, first_seed, verbose))
         return {row.pop("camera_policy"): row for row in report["rows"]}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 from opendr._errors import Unsupported
 from opendr._input_value import PathLike
@@ -72,6 +72,8 @@ class NativeLearnerRL(NativeBase, LearnerRL):
         episodes: int = 100,
         first_seed: int = 1_000_000,
         verbose: bool = False,
+        ray: Union[bool, str] = False,
+        ray_options: Optional[dict[str, Any]] = None,
     ) -> dict[str, Any]:
         """Evaluates the policy on episodes with fixed seeds.
 
@@ -81,6 +83,9 @@ class NativeLearnerRL(NativeBase, LearnerRL):
             episodes: Number of episodes; episode ``i`` has the seed ``first_seed + i``.
             first_seed: Seed of the first episode.
             verbose: Whether to show progress.
+            ray: Whether episodes run on a Ray cluster: True for the connected one or one of this machine, or an address
+                (``"auto"`` for the running one). An environment of yours is a function that can be pickled.
+            ray_options: Resources of a task on Ray, such as ``{"num_cpus": 2}``; by default one core.
 
         Returns:
             ``mean_return``, ``std_return``, ``mean_length``, ``episodes``, and, if the environment reports success,
@@ -94,7 +99,13 @@ class NativeLearnerRL(NativeBase, LearnerRL):
             ValueError: The environment has other spaces than the policy.
         """
         given = self._environments(env, env_params)
-        report = json.loads(self._handle.eval_in(given, episodes, first_seed, verbose))
+        if ray:
+            from opendr import _cluster
+
+            joined, _ = _cluster.evaluate_policy(self, given, episodes, first_seed, ray, ray_options, verbose)
+            report = json.loads(joined)
+        else:
+            report = json.loads(self._handle.eval_in(given, episodes, first_seed, verbose))
         numbers: dict[str, Any] = report["scalars"]
         if "controllers" in report:
             numbers["controllers"] = report["controllers"]

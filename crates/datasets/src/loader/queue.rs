@@ -23,6 +23,19 @@ pub(super) struct Job<'d, C> {
     pub(super) epoch: u64,
     /// Position of the first batch in `order`.
     pub(super) position: usize,
+    pub(super) share: Share,
+}
+
+/// The batches of a loader among all: every `size`-th one, from `rank` on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Share {
+    pub(super) rank: usize,
+    pub(super) size: usize,
+}
+
+impl Share {
+    /// All batches.
+    pub(super) const ALL: Self = Self { rank: 0, size: 1 };
 }
 
 /// A batch with its skipped samples.
@@ -33,19 +46,25 @@ pub(super) struct Loaded<B> {
 }
 
 impl<C: Collate> Job<'_, C> {
+    /// Returns the number of batches of the share.
     pub(super) fn batches(&self) -> usize {
-        (self.order.len() - self.position).div_ceil(self.options.batch_size)
+        let all = (self.order.len() - self.position).div_ceil(self.options.batch_size);
+        all.saturating_sub(self.share.rank).div_ceil(self.share.size)
     }
 
-    /// Returns the position in `order` at which batch `number` ends.
+    /// Returns the position in `order` at which batch `number` of the share begins.
+    fn start(&self, number: usize) -> usize {
+        self.position + (self.share.rank + number * self.share.size) * self.options.batch_size
+    }
+
+    /// Returns the position in `order` at which batch `number` of the share ends.
     pub(super) fn end(&self, number: usize) -> usize {
-        (self.position + (number + 1) * self.options.batch_size).min(self.order.len())
+        (self.start(number) + self.options.batch_size).min(self.order.len())
     }
 
     /// Makes batch `number`; fails once `stopped` is set.
     pub(super) fn batch(&self, number: usize, stopped: &AtomicBool) -> Result<Loaded<C::Batch>> {
-        let start = self.position + number * self.options.batch_size;
-        let order = &self.order[start..self.end(number)];
+        let order = &self.order[self.start(number)..self.end(number)];
         let mut loaded =
             Loaded { content: self.collate.start(order.len()), indices: Vec::new(), skipped: Vec::new() };
         for index in order.iter().copied() {

@@ -123,6 +123,32 @@ fn an_epoch_resumes_at_its_position() {
 }
 
 #[test]
+fn shares_divide_the_batches_and_read_only_their_own() {
+    for (threads, position) in [(0, 0), (2, 0), (2, 8)] {
+        let whole: Vec<_> = loader(Pictures::new(22), threads).resume(3, position).unwrap().collect();
+        let whole: Vec<_> = whole.into_iter().map(|batch| batch.unwrap()).collect();
+        for rank in 0..4 {
+            let pictures = Pictures::new(22);
+            let read = Arc::clone(&pictures.read);
+            let share = loader(pictures, threads).share(rank, 4).unwrap();
+            let batches: Vec<_> = share.resume(3, position).unwrap().map(|batch| batch.unwrap()).collect();
+            let wanted: Vec<_> = whole.iter().skip(rank).step_by(4).collect();
+            assert_eq!(batches.len(), wanted.len(), "share {rank} from {position} on");
+            for (one, other) in batches.iter().zip(wanted) {
+                assert_eq!((&one.indices, one.next_position), (&other.indices, other.next_position));
+                assert!(one.content == other.content);
+            }
+            assert_eq!(
+                read.load(Ordering::SeqCst),
+                batches.iter().map(|batch| batch.indices.len()).sum::<usize>()
+            );
+        }
+    }
+    let error = loader(Pictures::new(22), 0).share(2, 2).err().unwrap();
+    assert_eq!(error.kind(), ErrorKind::InvalidParam);
+}
+
+#[test]
 fn reading_ahead_is_bounded_and_ends_when_dropped() {
     for threads in [1, 2, 4] {
         let pictures = Pictures::new(4000);

@@ -148,6 +148,7 @@ impl Fit for Counter {
         val_dataset: Option<DatasetRef<'_>>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
+        job.check_single(Self::SPEC.name)?;
         let dataset = samples(dataset)?;
         let val_dataset = val_dataset.map(samples).transpose()?;
         let checkpoint = job.output.join(CHECKPOINT);

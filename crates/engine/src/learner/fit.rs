@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use crate::dataset::DatasetRef;
-use crate::learner::{Handle, Learner};
+use crate::learner::{Handle, Learner, TrainingGroup};
 use crate::model::Model;
 use crate::params::Params;
-use crate::{Device, Progress, Result, Silent, Statistics};
+use crate::{Device, Error, Progress, Result, Silent, Statistics};
 
 /// Output folder, device and progress of a training.
 #[derive(Clone, Copy)]
@@ -23,6 +23,8 @@ pub struct FitJob<'a> {
     pub skip_broken: bool,
     /// Receiver of the progress; it also reports whether the user stops the training.
     pub progress: &'a dyn Progress,
+    /// The processes that train together with this one; `None` for a training by itself.
+    pub group: Option<&'a dyn TrainingGroup>,
 }
 
 impl<'a> FitJob<'a> {
@@ -35,6 +37,20 @@ impl<'a> FitJob<'a> {
             device: Device::Auto,
             skip_broken: false,
             progress: &Silent,
+            group: None,
+        }
+    }
+
+    /// Checks that the job is a training by itself.
+    ///
+    /// # Errors
+    /// `Unsupported` for a job of a group.
+    pub fn check_single(&self, learner: &str) -> Result<()> {
+        match self.group {
+            None => Ok(()),
+            Some(_) => {
+                Err(Error::unsupported(format!("{learner} trains in one process, not in a group of several")))
+            }
         }
     }
 

@@ -18,6 +18,7 @@ mod rl;
 mod spec;
 mod stream;
 mod streaming;
+mod training_group;
 
 pub use active::LearnerActive;
 pub use any::{AnyLearner, AnyStream};
@@ -35,6 +36,7 @@ pub use rl::LearnerRl;
 pub use spec::Spec;
 pub use stream::Stream;
 pub use streaming::Streaming;
+pub use training_group::TrainingGroup;
 
 use crate::model::Model;
 use crate::params::{ParamMap, Params};

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, Strides, Window};
+use opendr_kernels::{
+    Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, LayerCost, Strides, Window,
+};
 use opendr_onnx::proto::NodeProto;
 
 use super::fusion::{self, Fused};
@@ -191,6 +193,10 @@ impl Kernel for ConvStep {
         self.0.run(io.compute, x, residual, io.write());
         Ok(())
     }
+
+    fn cost(&self) -> LayerCost {
+        self.0.cost()
+    }
 }
 
 struct DepthwiseStep(DepthwiseConvolution);
@@ -200,5 +206,9 @@ impl Kernel for DepthwiseStep {
         let x = io.read::<f32>(0);
         self.0.run(io.compute, x, io.write());
         Ok(())
+    }
+
+    fn cost(&self) -> LayerCost {
+        self.0.cost()
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::Window;
+use opendr_kernels::{LayerCost, Window};
 use opendr_onnx::proto::NodeProto;
 
 use super::conv::{output_shape, window};
@@ -46,7 +46,8 @@ pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
     count(&shape)?;
     let taps = taps(&weights, &zeros, groups);
     let x = planner.channels_last(x)?;
-    let step = SumStep { window, taps: taps.into(), groups, channels, outputs: outputs / groups, is_signed };
+    let (batch, outputs) = (dims[0], outputs / groups);
+    let step = SumStep { window, batch, taps: taps.into(), groups, channels, outputs, is_signed };
     planner.emit(step, &[Some(x), x_zero], &[(Kind::I32, shape, Layout::ChannelsLast)])
 }
 
@@ -72,6 +73,7 @@ fn taps(weights: &Constant, zeros: &[i32], groups: usize) -> Vec<i32> {
 
 struct SumStep {
     window: Window,
+    batch: usize,
     taps: Arc<[i32]>,
     groups: usize,
     /// Channels and outputs of a group.
@@ -98,6 +100,12 @@ impl Kernel for SumStep {
             }
         });
         Ok(())
+    }
+
+    fn cost(&self) -> LayerCost {
+        let Window { kernel, output, .. } = self.window;
+        let factors = [self.groups, self.outputs, self.channels, kernel[0], kernel[1], output[0], output[1]];
+        LayerCost::bytes(&factors) * self.batch
     }
 }
 

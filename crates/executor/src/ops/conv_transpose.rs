@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{Convolution, Filters, Finish, Strides, Window};
+use opendr_kernels::{Convolution, Filters, Finish, LayerCost, Strides, Window};
 use opendr_onnx::proto::NodeProto;
 
 use super::conv::{ConvStep, constant_bias, finish};
@@ -295,6 +295,10 @@ impl Kernel for PhasesStep {
             phase.conv.run(io.compute, x, residual, y.get_mut(phase.to..).unwrap_or_default());
         }
         Ok(())
+    }
+
+    fn cost(&self) -> LayerCost {
+        self.0.iter().fold(LayerCost::default(), |sum, phase| sum + phase.conv.cost())
     }
 }
 

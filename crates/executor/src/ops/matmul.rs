@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{Convolution, Filters, Finish, Matrix, MatrixMut, Product, Strides, Window};
+use opendr_kernels::{Convolution, Filters, Finish, LayerCost, Matrix, MatrixMut, Product, Strides, Window};
 use opendr_onnx::proto::NodeProto;
 
 use super::inputs::required;
@@ -168,6 +168,10 @@ impl Kernel for RowsStep {
         self.0.run(io.compute, x, None, io.write());
         Ok(())
     }
+
+    fn cost(&self) -> LayerCost {
+        self.0.cost()
+    }
 }
 
 struct ProductStep {
@@ -186,5 +190,9 @@ impl Kernel for ProductStep {
             Product::new().run(io.compute, a, b, MatrixMut::new(y, rows, columns));
         }
         Ok(())
+    }
+
+    fn cost(&self) -> LayerCost {
+        LayerCost::floats(&self.sizes) * self.left.len()
     }
 }

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{ByteConvolution, ByteFilters, ByteOutput, ByteWeights, ByteZero, Compute, Window};
+use opendr_kernels::{
+    ByteConvolution, ByteFilters, ByteOutput, ByteWeights, ByteZero, Compute, LayerCost, Window,
+};
 use opendr_onnx::proto::NodeProto;
 
 use super::inputs::{optional, required};
@@ -144,6 +146,10 @@ impl Kernel for PackedStep {
         }
         Ok(())
     }
+
+    fn cost(&self) -> LayerCost {
+        self.packed.product.cost()
+    }
 }
 
 struct ProductStep {
@@ -176,5 +182,9 @@ impl Kernel for ProductStep {
             }
         }
         Ok(())
+    }
+
+    fn cost(&self) -> LayerCost {
+        LayerCost::bytes(&self.sizes) * self.left.len()
     }
 }

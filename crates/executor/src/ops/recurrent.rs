@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{Compute, Convolution, Filters, Finish, Strides, Window};
+use opendr_kernels::{Compute, Convolution, Filters, Finish, LayerCost, Strides, Window};
 use opendr_onnx::proto::NodeProto;
 
 use super::inputs::{optional, required};
@@ -200,6 +200,14 @@ impl Kernel for RecurrentStep {
             }
         }
         Ok(())
+    }
+
+    fn cost(&self) -> LayerCost {
+        let per_step = |product: &Convolution| product.cost() * self.steps;
+        self.cells.iter().fold(LayerCost::default(), |sum, cell| {
+            let last = cell.last.as_ref().map(per_step).unwrap_or_default();
+            sum + cell.input.cost() + per_step(&cell.hidden) + last
+        })
     }
 }
 

@@ -74,5 +74,18 @@ fn a_convolution_with_a_sum_and_an_activation_is_one_step() {
     });
     run.unwrap();
     // The convolution with what is fused, and the layouts at the edges.
-    assert_eq!(executor.profile(&input).unwrap().iter().filter(|layer| layer.operator != "Conv").count(), 0);
+    let mut outputs = 0;
+    let layers = executor.profile(&input, &mut |all| {
+        outputs += all.len();
+        Ok(())
+    });
+    let layers = layers.unwrap();
+    assert!(layers.iter().all(|layer| layer.operator == "Conv") && outputs == 1, "{layers:?}");
+    assert!(layers.windows(2).all(|pair| pair[0].start + pair[0].time <= pair[1].start), "{layers:?}");
+    // Two channels by two outputs for three pixels, two operations each; the sum is part of the step, whose input is read as well.
+    let sums: Vec<_> = layers.iter().filter(|layer| layer.cost.float_operations > 0).collect();
+    assert_eq!(sums.len(), 1, "{layers:?}");
+    assert_eq!((sums[0].cost.float_operations, sums[0].cost.byte_operations), (24, 0));
+    assert_eq!(sums[0].tensor_bytes, 3 * 6 * 4);
+    assert!(sums[0].cost.weight_bytes >= 16, "{:?}", sums[0]);
 }

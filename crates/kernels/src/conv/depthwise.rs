@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::geometry::{Finish, Strides, Window};
 use crate::aligned::AlignedBuffer;
 use crate::compute::Compute;
+use crate::cost::LayerCost;
 use crate::isa::{Isa, for_every_isa};
 use crate::lanes::Lanes;
 use crate::unary::{Unary, unary_all};
@@ -51,6 +52,11 @@ impl DepthwiseFilters {
         self.channels
     }
 
+    /// Returns the bytes of the packed weights.
+    pub fn bytes(&self) -> usize {
+        size_of::<f32>() * (self.kernel[0] * self.kernel[1] + 1) * self.padded
+    }
+
     /// Returns `values`, one per channel, filled up as the rows of weights are.
     pub fn padded(&self, values: &[f32]) -> Vec<f32> {
         let mut all = values.to_vec();
@@ -77,6 +83,13 @@ pub struct DepthwiseConvolution {
 }
 
 impl DepthwiseConvolution {
+    /// Returns the arithmetic and the bytes of the weights.
+    pub fn cost(&self) -> LayerCost {
+        let Window { kernel, output, .. } = self.window;
+        let factors = [self.batch, output[0], output[1], self.filters.channels(), kernel[0], kernel[1]];
+        LayerCost::floats(&factors).with_weights(self.filters.bytes())
+    }
+
     /// Computes the convolution.
     ///
     /// # Panics

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::filters::Filters;
+use crate::cost::LayerCost;
 use crate::unary::Unary;
 
 /// Geometry of a convolution of two spatial dimensions.
@@ -91,4 +92,15 @@ pub struct Convolution {
     pub residual: Strides,
     /// What follows the sums.
     pub finish: Finish,
+}
+
+impl Convolution {
+    /// Returns the arithmetic and the bytes of the weights.
+    pub fn cost(&self) -> LayerCost {
+        let Window { kernel, output, .. } = self.window;
+        let per_output = self.filters.channels() / self.filters.groups().max(1);
+        let factors =
+            [self.batch, output[0], output[1], self.filters.outputs(), per_output, kernel[0], kernel[1]];
+        LayerCost::floats(&factors).with_weights(self.filters.bytes())
+    }
 }

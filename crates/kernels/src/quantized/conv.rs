@@ -10,6 +10,7 @@ use super::tile::{Rows, panel};
 use crate::aligned::{LEFT_PANELS, PATCHES, with_buffer};
 use crate::compute::Compute;
 use crate::conv::Window;
+use crate::cost::LayerCost;
 
 /// Number of multiplications from which on several threads are used.
 const PARALLEL_FROM: usize = 1 << 18;
@@ -32,6 +33,14 @@ pub struct ByteConvolution {
 }
 
 impl ByteConvolution {
+    /// Returns the arithmetic and the bytes of the weights.
+    pub fn cost(&self) -> LayerCost {
+        let Window { kernel, output, .. } = self.window;
+        let ByteFilters { outputs, channels, .. } = *self.filters;
+        let factors = [self.batch, output[0], output[1], outputs, channels, kernel[0], kernel[1]];
+        LayerCost::bytes(&factors).with_weights(self.filters.bytes())
+    }
+
     /// Computes the convolution; signed bytes are given as their bits.
     ///
     /// # Panics

@@ -8,6 +8,7 @@ use super::instructions::{Instructions, for_all_instructions};
 use super::output::{Bounds, ByteOutput, ByteZero};
 use crate::compute::Compute;
 use crate::conv::Window;
+use crate::cost::LayerCost;
 
 /// Registers of a group of channels.
 const GROUP: usize = 4;
@@ -118,6 +119,14 @@ pub struct ByteDepthwise {
 }
 
 impl ByteDepthwise {
+    /// Returns the arithmetic and the bytes of the weights.
+    pub fn cost(&self) -> LayerCost {
+        let Window { kernel, output, .. } = self.window;
+        let factors = [self.batch, output[0], output[1], self.filters.channels, kernel[0], kernel[1]];
+        LayerCost::bytes(&factors)
+            .with_weights(size_of::<i32>() * (self.filters.words.len() + self.filters.rest.len()))
+    }
+
     /// Computes the convolution; signed bytes are given as their bits.
     ///
     /// # Panics

@@ -148,6 +148,11 @@ impl ByteFilters {
         self.scales[output] = weights.scale(output);
     }
 
+    /// Returns the bytes of the packed weights.
+    pub fn bytes(&self) -> usize {
+        size_of::<i32>() * self.panels.len()
+    }
+
     pub(super) fn panel_count(&self) -> usize {
         (self.constants.len() / self.instructions.width()).div_ceil(self.vectors)
     }

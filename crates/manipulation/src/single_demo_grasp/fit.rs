@@ -37,6 +37,7 @@ impl Fit for SingleDemoGrasp {
         let DatasetRef::Iterator(dataset) = dataset else {
             return Err(Error::invalid_input("an unopened data set; open it by its format first"));
         };
+        job.check_single(Self::SPEC.name)?;
         let example = GraspExample::from_dataset(dataset)?;
         let mut statistics = Statistics::default();
         job.progress.begin("training on augmentations", Some(u64::from(fit_params.iters)), Unit::Steps);

@@ -13,3 +13,11 @@ pub struct Odometry {
     pub pose: crate::geometry_msgs::PoseWithCovariance,
     pub twist: crate::geometry_msgs::TwistWithCovariance,
 }
+
+/// `nav_msgs/Path`.
+#[allow(missing_docs)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Path {
+    pub header: crate::std_msgs::Header,
+    pub poses: Vec<crate::geometry_msgs::PoseStamped>,
+}

@@ -59,7 +59,10 @@ pub(super) fn fit_demonstrations(
     options: &FitOptions,
     progress: &dyn Progress,
 ) -> Result<Fitted> {
-    let FitData { dataset, val_dataset, teacher } = data;
+    let FitData { dataset, val_dataset, teacher, group } = data;
+    if group.is_some() {
+        return Err(Error::unsupported("a policy learns in one process, not in a group of several"));
+    }
     if teacher.is_some() {
         return Err(Error::unsupported("a policy learns from demonstrations, not from another learner"));
     }
@@ -129,6 +132,7 @@ fn fit_with(
         device: learner.device(),
         skip_broken: false,
         progress,
+        group: None,
     };
     let statistics = match progress.stopped() {
         true => Statistics::default(),

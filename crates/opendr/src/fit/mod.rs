@@ -76,6 +76,7 @@ pub fn fit(
         device: learner.device(),
         skip_broken: options.skip_broken,
         progress,
+        group: data.group,
     };
     let statistics = match progress.stopped() {
         true => Statistics::default(),

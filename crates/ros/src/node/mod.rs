@@ -8,12 +8,14 @@ mod inbox;
 mod labels;
 mod outputs;
 mod params;
+mod path;
 mod topics;
 mod worker;
 
 pub use feeds::SharedSubscriptions;
 pub use params::NodeParams;
 pub use topics::{NodeOptions, TopicOptions, default_topics};
+pub use worker::NodeObserver;
 
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -59,6 +61,11 @@ impl LearnerNode {
             feeds.subscribe(graph, topic, port.value_type, &inbox, index)?;
         }
         Ok(Self { worker })
+    }
+
+    /// Calls `observer` after each inference, on the thread of the node.
+    pub fn observe(&mut self, observer: NodeObserver) {
+        self.worker.observe(observer);
     }
 
     /// Returns the flag of the active node; while it is false, inputs are skipped and nothing is published.

@@ -7,6 +7,7 @@ use opendr_engine::{Result, Value};
 use opendr_messages::{Message, MessageType};
 use opendr_ros_bridge::{RosBridge, view_action};
 
+use super::path::Paths;
 use super::topics::TopicOptions;
 use crate::{Graph, Publisher, Qos};
 
@@ -20,27 +21,35 @@ struct OutputTopic {
 /// Topics of a node's outputs.
 pub(super) struct OutputTopics {
     topics: Vec<OutputTopic>,
+    paths: Paths,
     view_action: Arc<dyn Publisher>,
 }
 
 impl OutputTopics {
     pub(super) fn new(graph: &mut dyn Graph, topics: &[TopicOptions]) -> Result<Self> {
         let mut own = Vec::with_capacity(topics.len());
+        let mut paths = Paths::default();
         for TopicOptions { name, topic, message_type, qos } in topics {
             let publisher = graph.advertise(topic, *message_type, *qos)?;
+            if *message_type == MessageType::NavMsgsOdometry {
+                paths.add(graph)?;
+            }
             own.push(OutputTopic { name: name.clone(), message_type: *message_type, publisher });
         }
         let view_action =
             graph.advertise("~/set_view_action", MessageType::OpendrMsgsViewAction, Qos::RESULT)?;
-        Ok(Self { topics: own, view_action })
+        Ok(Self { topics: own, paths, view_action })
     }
 
     /// Publishes every output that has a topic.
-    pub(super) fn publish(&self, outputs: &Outputs, bridge: &RosBridge) -> Result<()> {
+    pub(super) fn publish(&mut self, outputs: &Outputs, bridge: &RosBridge) -> Result<()> {
         for topic in &self.topics {
             let Some(value) = outputs.get(&topic.name) else { continue };
-            let value = value.as_value_ref();
-            topic.publisher.publish(bridge.message_from_value(value, topic.message_type)?)?;
+            let message = bridge.message_from_value(value.as_value_ref(), topic.message_type)?;
+            if let Message::NavMsgsOdometry(odometry) = &message {
+                self.paths.publish(odometry)?;
+            }
+            topic.publisher.publish(message)?;
         }
         for (_, value) in outputs.iter() {
             if let Some(action) = value.as_value_ref().action() {
@@ -48,6 +57,11 @@ impl OutputTopics {
             }
         }
         Ok(())
+    }
+
+    /// Begins new paths, as the stream does.
+    pub(super) fn reset(&mut self) {
+        self.paths.reset();
     }
 
     /// Returns whether the node commands velocities, which it must set to zero when inputs stop.

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use opendr_engine::learner::{AnyStream, Entry, Outputs, Ports};
 use opendr_engine::target::Classes;
-use opendr_engine::{Error, Result};
+use opendr_engine::{Error, Result, ValueRef};
 use opendr_messages::{MessageType, std_msgs};
 
 use super::annotated::Annotated;
@@ -37,7 +37,11 @@ pub(super) struct Worker {
     log: Log,
     /// Time of the last processed input; `None` before the first and after velocities were set to zero.
     moving_since: Option<Instant>,
+    observer: Option<NodeObserver>,
 }
+
+/// Receives the first input, the outputs and the processing time in milliseconds of each inference of a node.
+pub type NodeObserver = Box<dyn FnMut(ValueRef<'_>, &Outputs, f64) + Send>;
 
 impl Worker {
     #[allow(clippy::too_many_arguments)]
@@ -71,7 +75,12 @@ impl Worker {
             clock: graph.clock(),
             log: graph.log(),
             moving_since: None,
+            observer: None,
         })
+    }
+
+    pub(super) fn observe(&mut self, observer: NodeObserver) {
+        self.observer = Some(observer);
     }
 
     pub(super) fn active(&self) -> Arc<AtomicBool> {
@@ -85,6 +94,7 @@ impl Worker {
             let set = self.inbox.take(slop_ns, PATIENCE);
             if self.reset.swap(false, Ordering::Relaxed) {
                 self.stream.reset();
+                self.outputs.reset();
             }
             let done = match set {
                 Some(_) if !self.active.load(Ordering::Relaxed) => self.rest(),
@@ -142,6 +152,10 @@ impl Worker {
                 opendr_engine::ErrorKind::Device,
                 format!("an inference took {processing_ms:.1} ms, longer than the deadline of {deadline} ms"),
             ));
+        }
+        if let (Some(observer), Some(frame)) = (&mut self.observer, set.iter().flatten().next()) {
+            let input = frame.value()?;
+            answers.iter().for_each(|outputs| observer(input.as_value_ref(), outputs, processing_ms));
         }
         if let (Some(annotated), true) = (&self.annotated, params.annotate) {
             for outputs in &answers {

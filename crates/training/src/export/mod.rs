@@ -66,6 +66,7 @@ pub use input::{ElementKind, Input, Inputs};
 pub use output::Outputs;
 pub(crate) use recurrent::record_gru;
 
+use input::Declared;
 use lowering::Lowering;
 use sizes::Sizes;
 use trace::Trace;
@@ -93,9 +94,24 @@ pub fn onnx<M: Module, I: Inputs, O: Outputs>(
 ) -> Result<Vec<u8>> {
     let network = network.valid();
     trace::initialise(&network);
-    let declared = inputs.declared();
-    let record = |batch| Trace::record(&network, &inputs, batch, &forward);
-    let open = declared.iter().any(|input| input.open.is_some());
+    let record = |batch| {
+        Trace::record(&mut |device, trace| {
+            let network = network.clone().to_device(device);
+            trace.name_parameters(&network);
+            let tensors = inputs.tensors(batch, device, &mut trace.inputs)?;
+            forward(&network, tensors).ids(&mut trace.outputs)
+        })
+    };
+    onnx_of_recordings(&record, &inputs.declared(), outputs)
+}
+
+/// Returns the model of a network from `record`, which records a forward pass with a batch size.
+fn onnx_of_recordings(
+    record: &dyn Fn(usize) -> Result<Trace>,
+    inputs: &[Declared],
+    outputs: &[&str],
+) -> Result<Vec<u8>> {
+    let open = inputs.iter().any(|input| input.open.is_some());
     let (trace, sizes) = match open {
         true => {
             let (mut trace, other) = (record(BATCHES[0])?, record(BATCHES[1])?);
@@ -112,7 +128,7 @@ pub fn onnx<M: Module, I: Inputs, O: Outputs>(
             outputs.join(", ")
         )));
     }
-    let mut graph = Lowering::new(&trace, &sizes, &declared, outputs)?.lower(outputs)?;
+    let mut graph = Lowering::new(&trace, &sizes, inputs, outputs)?.lower(outputs)?;
     passes::simplify(&mut graph);
     let mut model = model_from_graph(graph);
     "opendr-training".clone_into(&mut model.producer_name);

@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
-use burn::module::{Module, ModuleMapper, Param};
-use burn::tensor::{DType, Tensor, TensorData};
+use burn::module::Module;
+use burn::tensor::Tensor;
 
+use crate::traversal::{Change, FloatParam, changed};
 use crate::weights::slot::Walk;
 
 /// Values by the path of their parameter, in the parameter's length and layout.
@@ -15,25 +16,21 @@ struct Fill {
     plan: Plan,
 }
 
-impl ModuleMapper for Fill {
-    fn enter_module(&mut self, name: &str, container_type: &str) {
-        self.walk.enter(name, container_type);
+impl Change for Fill {
+    fn enter(&mut self, name: &str, container: &str) {
+        self.walk.enter(name, container);
     }
 
-    fn exit_module(&mut self, _: &str, _: &str) {
+    fn exit(&mut self) {
         self.walk.exit();
     }
 
-    fn map_float<const D: usize>(&mut self, param: Param<Tensor<D>>) -> Param<Tensor<D>> {
-        let Some(values) = self.plan.remove(&self.walk.path()) else { return param };
-        let data = TensorData::new(values, param.lazy_shape());
-        let tensor = Tensor::from_data(data, (&param.lazy_device(), DType::F32));
-        let id = param.id;
-        param.transform_for_load(tensor, id)
+    fn float(&mut self, param: &dyn FloatParam) -> Option<Tensor<1>> {
+        self.plan.remove(&self.walk.path()).map(|values| param.tensor(values))
     }
 }
 
 /// Returns the module with the plan's values; other parameters are unchanged, and all keep their ids in the optimiser.
 pub(super) fn fill<M: Module>(module: M, plan: Plan) -> M {
-    module.map(&mut Fill { walk: Walk::default(), plan })
+    changed(module, &mut Fill { walk: Walk::default(), plan })
 }

@@ -1,8 +1,6 @@
 //! Parameters of a module, in the order of its fields.
 
-use burn::module::{Module, ModuleVisitor, Param};
-use burn::tensor::Tensor;
-
+use crate::traversal::{AnyModule, FloatParam, Visit};
 use crate::weights::Rules;
 
 /// A parameter of a module.
@@ -82,17 +80,17 @@ struct Slots<'a> {
     slots: Vec<Slot>,
 }
 
-impl ModuleVisitor for Slots<'_> {
-    fn enter_module(&mut self, name: &str, container_type: &str) {
-        self.walk.enter(name, container_type);
+impl Visit for Slots<'_> {
+    fn enter(&mut self, name: &str, container: &str) {
+        self.walk.enter(name, container);
     }
 
-    fn exit_module(&mut self, _: &str, _: &str) {
+    fn exit(&mut self) {
         self.walk.exit();
     }
 
-    fn visit_float<const D: usize>(&mut self, param: &Param<Tensor<D>>) {
-        let (path, shape) = (self.walk.path(), param.lazy_shape().to_vec());
+    fn float(&mut self, param: &dyn FloatParam) {
+        let (path, shape) = (self.walk.path(), param.shape());
         let dense = self.walk.container() == "Linear" && path.ends_with("weight");
         let transposed = self.walk.container().starts_with("ConvTranspose");
         self.slots.push(Slot { covered: self.rules.cover(&path), path, shape, dense, transposed });
@@ -100,8 +98,8 @@ impl ModuleVisitor for Slots<'_> {
 }
 
 /// Returns the floating-point parameters and running statistics of a module.
-pub(super) fn slots<M: Module>(module: &M, rules: &Rules) -> Vec<Slot> {
+pub(super) fn slots(module: &dyn AnyModule, rules: &Rules) -> Vec<Slot> {
     let mut visitor = Slots { walk: Walk::default(), rules, slots: Vec::new() };
-    module.visit(&mut visitor);
+    module.visit_each(&mut visitor);
     visitor.slots
 }

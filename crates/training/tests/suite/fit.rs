@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use crate::small::{ClassifyPoints, Network, Spirals};
 use crate::turn;
-use opendr_engine::learner::FitJob;
+use opendr_engine::learner::{FitJob, TrainingGroup};
 use opendr_engine::model::Model;
 use opendr_engine::{Device, ErrorKind, Progress, Random, Result, Statistics, Unit};
 use opendr_training::{OptimizerKind, ScheduleKind, Score, TrainingParams, fit_network, seeded_device};
@@ -242,4 +242,141 @@ fn invalid_trainings_are_refused() {
     let error = train(&params(), &Spirals { count: 8, broken: None }, &job(&file)).unwrap_err();
     assert!(error.to_string().contains(&*file.display().to_string()), "{error}");
     fs::remove_file(file).unwrap();
+}
+
+/// Environment variable with rank, size and accumulated batches of a process of a group.
+const MEMBER: &str = "OPENDR_TEST_TRAINS_AS";
+
+/// Processes that exchange payloads as files of a folder.
+struct FolderGroup {
+    folder: PathBuf,
+    rank: usize,
+    size: usize,
+    round: AtomicU64,
+}
+
+impl TrainingGroup for FolderGroup {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn size(&self) -> usize {
+        self.size
+    }
+
+    fn all_gather(&self, payload: Vec<u8>) -> Result<Vec<Vec<u8>>> {
+        let round = self.round.fetch_add(1, Ordering::Relaxed);
+        let path = |rank| self.folder.join(format!("{round}-{rank}"));
+        let partial = self.folder.join(format!("partial-{}", self.rank));
+        fs::write(&partial, payload)?;
+        fs::rename(partial, path(self.rank))?;
+        (0..self.size)
+            .map(|rank| {
+                while !path(rank).exists() {
+                    std::thread::sleep(Duration::from_micros(200));
+                }
+                Ok(fs::read(path(rank))?)
+            })
+            .collect()
+    }
+}
+
+fn group_params() -> TrainingParams {
+    TrainingParams { epochs: 6, accumulate: 4, ..params() }
+}
+
+/// 22 batches of 32: the last step of an epoch has two batches.
+const GROUP_POINTS: Spirals = Spirals { count: 720, broken: None };
+
+/// A process of the next tests; no effect outside of it.
+#[test]
+fn member_trains() {
+    let (Some(output), Ok(member)) = (env::var_os(CHILD).map(PathBuf::from), env::var(MEMBER)) else {
+        return;
+    };
+    let numbers: Vec<usize> = member.split('/').map(|number| number.parse().unwrap()).collect();
+    let [rank, size, accumulate] = numbers[..] else { panic!("{member}") };
+    let folder = output.join("exchange");
+    fs::create_dir_all(&folder).unwrap();
+    let group = FolderGroup { folder, rank, size, round: AtomicU64::new(0) };
+    let own = output.join(format!("{rank}"));
+    let job = FitJob { group: Some(&group), resume: true, ..job(&own) };
+    let done = train(&TrainingParams { accumulate, ..group_params() }, &GROUP_POINTS, &job);
+    match done {
+        Ok(statistics) => {
+            fs::write(output.join(format!("loss-{rank}")), format!("{:?}", statistics.curves)).unwrap();
+        }
+        Err(error) => fs::write(output.join(format!("error-{rank}")), error.to_string()).unwrap(),
+    }
+}
+
+/// Runs a group with a number of accumulated batches for each process.
+fn members(output: &Path, accumulate: &[usize]) {
+    fs::remove_dir_all(output.join("exchange")).ok();
+    let start = |rank| {
+        Command::new(env::current_exe().unwrap())
+            .args(["fit::member_trains", "--exact", "--test-threads=1"])
+            .env(CHILD, output)
+            .env(MEMBER, format!("{rank}/{}/{}", accumulate.len(), accumulate[rank]))
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap()
+    };
+    let members: Vec<_> = (0..accumulate.len()).map(start).collect();
+    for mut member in members {
+        assert!(member.wait().unwrap().success());
+    }
+}
+
+#[test]
+fn a_group_of_processes_trains_the_weights_of_one() {
+    let whole = scratch("one");
+    let statistics = train(&group_params(), &GROUP_POINTS, &job(&whole)).unwrap();
+    assert_eq!(statistics.get("steps"), Some(36.0));
+    for size in [1, 2, 4] {
+        let output = scratch(&format!("group-{size}"));
+        members(&output, &vec![4; size]);
+        for rank in 0..size {
+            let own = output.join(format!("{rank}"));
+            assert!(weights(&whole) == weights(&own), "process {rank} of {size} has other weights");
+            let curves = fs::read_to_string(output.join(format!("loss-{rank}"))).unwrap();
+            assert_eq!(curves, format!("{:?}", statistics.curves), "process {rank} of {size}");
+        }
+        fs::remove_dir_all(output).unwrap();
+    }
+    fs::remove_dir_all(whole).unwrap();
+}
+
+#[test]
+fn a_group_resumes_from_the_checkpoint_of_its_first_process() {
+    let (whole, output) = (scratch("one-resumed"), scratch("group-resumed"));
+    train(&group_params(), &GROUP_POINTS, &job(&whole)).unwrap();
+    // The first process has been stopped by itself, after which two go on.
+    let stop = StopAfter(AtomicU64::new(15));
+    let own = output.join("0");
+    let first = FitJob { progress: &stop, ..job(&own) };
+    assert_eq!(train(&group_params(), &GROUP_POINTS, &first).unwrap().get("steps"), Some(15.0));
+    members(&output, &[4, 4]);
+    assert!(weights(&whole) == weights(&own));
+    assert!(weights(&whole) == weights(&output.join("1")));
+    for folder in [whole, output] {
+        fs::remove_dir_all(folder).unwrap();
+    }
+}
+
+#[test]
+fn a_group_with_other_parameters_or_an_undivided_step_is_refused() {
+    let output = scratch("group-refused");
+    members(&output, &[2, 4]);
+    let errors = [0, 1].map(|rank| fs::read_to_string(output.join(format!("error-{rank}"))).unwrap());
+    assert!(errors[0].contains("process 1 of the training has other data, parameters"), "{}", errors[0]);
+    assert!(errors[1].contains("process 0 of the training has other data, parameters"), "{}", errors[1]);
+    let group = FolderGroup { folder: output.clone(), rank: 0, size: 3, round: AtomicU64::new(0) };
+    let job = FitJob { group: Some(&group), ..job(&output) };
+    let error = train(&group_params(), &GROUP_POINTS, &job).unwrap_err();
+    assert!(
+        error.to_string().contains("accumulate = 4 batches of a step cannot be divided among 3"),
+        "{error}"
+    );
+    fs::remove_dir_all(output).unwrap();
 }

@@ -1,5 +1,6 @@
 //! `opendr bench`: measures the speed of a learner, stage by stage.
 
+mod layers;
 mod synthetic;
 mod workload;
 
@@ -12,6 +13,7 @@ use opendr::learner::{AnyLearner, Entry, Ports};
 use opendr::{Error, JsonFormat, PolicyController, Progress, Result, Unit};
 use serde::Serialize;
 
+use self::layers::{LayerReport, ProfiledCall};
 use self::workload::{Input, Workload};
 use crate::exit::Outcome;
 use crate::peak_memory::peak_memory_mb;
@@ -24,7 +26,9 @@ Examples:
   opendr bench LEARNER
   opendr bench LEARNER faces.jpg --threads 1 --json
   opendr bench whisper talk.wav                     audio, with the real-time factor: time over duration
-  opendr bench ppo --env CartPole-v1                a policy in its environment";
+  opendr bench ppo --env CartPole-v1                a policy in its environment
+  OPENDR_RUNTIME=builtin opendr bench LEARNER --layers --trace trace.json
+                                                    the layers of its networks; ui.perfetto.dev shows the trace";
 
 pub fn grammar() -> Command {
     let count = |name: &'static str, default: &'static str| {
@@ -46,6 +50,19 @@ pub fn grammar() -> Command {
                 .long("json")
                 .action(ArgAction::SetTrue)
                 .help("Print JSON (docs/command-line.md)"),
+        )
+        .arg(
+            Arg::new("layers").long("layers").action(ArgAction::SetTrue).help(
+                "Profile the layers of the networks too: time, GFLOP/s, GB/s and share of the machine's peak (built-in runtime)",
+            ),
+        )
+        .arg(
+            Arg::new("trace")
+                .long("trace")
+                .value_parser(value_parser!(PathBuf))
+                .value_name("FILE")
+                .requires("layers")
+                .help("Write the first profiled calls as trace events, which ui.perfetto.dev shows"),
         )
         .args(loading::flags())
         .after_help(EXAMPLES)
@@ -70,18 +87,35 @@ struct Measurement {
     p50_ms: Timings,
     p99_ms: Timings,
     peak_memory_mb: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    layers: Option<LayerReport>,
+}
+
+/// Calls that are profiled after the measurement.
+const PROFILED: usize = 30;
+
+/// The calls of a learner, measured and profiled.
+struct Measured {
+    timings: Vec<Timings>,
+    profiles: Vec<ProfiledCall>,
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
     let options = SessionOptions::from(loading::device(matches)?);
+    if matches.get_flag("layers") {
+        layers::check_runtime(options.device)?;
+    }
     let bar = ProgressBar::new(matches.get_flag("quiet"));
     let mut learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, &bar)?;
-    let (workload, timings) = match environment_flags::is_policy(entry) {
+    let (workload, Measured { timings, profiles }) = match environment_flags::is_policy(entry) {
         true => measure_policy(learner.as_ref(), entry, matches, &bar)?,
         false => measure_inference(learner.as_mut(), spec, entry, matches, &bar)?,
     };
+    if let Some(path) = matches.get_one::<PathBuf>("trace") {
+        layers::write_trace(spec, &profiles, path)?;
+    }
     // The clock may not advance during a very fast call; 1 ns avoids a division by zero.
     let mean_s = (1e-3 * timings.iter().map(|one| one.total).sum::<f64>() / timings.len() as f64).max(1e-9);
     let measurement = Measurement {
@@ -101,7 +135,12 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         frames_per_second: mean_s.recip(),
         p50_ms: percentile(&timings, 0.50),
         p99_ms: percentile(&timings, 0.99),
+        // Before the limits of the machine are measured, which takes memory of its own.
         peak_memory_mb: peak_memory_mb(),
+        layers: match matches.get_flag("layers") {
+            true => Some(LayerReport::new(&profiles, options.thread_count()?)?),
+            false => None,
+        },
     };
     print(&measurement, matches.get_flag("json"))?;
     Ok(Outcome::Done)
@@ -114,11 +153,11 @@ fn measure_inference(
     entry: &'static Entry,
     matches: &ArgMatches,
     bar: &ProgressBar,
-) -> Result<(Workload, Vec<Timings>)> {
+) -> Result<(Workload, Measured)> {
     let (workload, inputs) = workload::inputs(spec, entry, matches, bar)?;
     let in_chunks = matches!(workload, Workload::Audio { .. }) && entry.capabilities.streaming;
     let mut frame = 0;
-    let timings = measure(matches, bar, || {
+    let measured = measure(matches, bar, || {
         let mut ports = Ports::default();
         for Input { port, values } in inputs.iter().filter(|input| frame == 0 || !input.port.init) {
             let value = values.get(frame % values.len().max(1)).ok_or_else(|| {
@@ -133,7 +172,7 @@ fn measure_inference(
         })?;
         Ok(timings)
     })?;
-    Ok((workload, timings))
+    Ok((workload, measured))
 }
 
 /// Measures a policy during episodes, without the time of the environment.
@@ -142,7 +181,7 @@ fn measure_policy(
     entry: &'static Entry,
     matches: &ArgMatches,
     bar: &ProgressBar,
-) -> Result<(Workload, Vec<Timings>)> {
+) -> Result<(Workload, Measured)> {
     let source = environment_flags::source(matches, Some(learner))?;
     let mut environment = source.make()?;
     let mut stream = PolicyController::new(learner.stream()?, entry, environment.spec())?;
@@ -152,7 +191,7 @@ fn measure_policy(
         environment.reset(seed, &ResetOptions::new(), observation).map(drop)
     };
     begin(environment.as_mut(), Some(0), &mut observation)?;
-    let timings = measure(matches, bar, || {
+    let measured = measure(matches, bar, || {
         let ((), timings) = Timings::of(|| stream.act(&observation, &mut action))?;
         if environment.step(&action, &mut observation)?.is_over() {
             begin(environment.as_mut(), None, &mut observation)?;
@@ -160,31 +199,39 @@ fn measure_policy(
         }
         Ok(timings)
     })?;
-    Ok((Workload::Environment(source.id().to_owned()), timings))
+    Ok((Workload::Environment(source.id().to_owned()), measured))
 }
 
-/// Returns the timings of `--frames` calls after `--warmup` calls.
+/// Returns the timings of `--frames` calls after `--warmup` calls, and with `--layers` the profiles of further ones.
 fn measure(
     matches: &ArgMatches,
     bar: &ProgressBar,
     mut call: impl FnMut() -> Result<Timings>,
-) -> Result<Vec<Timings>> {
+) -> Result<Measured> {
     let [frames, warmup] =
         ["frames", "warmup"].map(|name| matches.get_one::<u32>(name).map_or(1, |&count| count as usize));
-    bar.begin("measuring", Some((warmup + frames) as u64), Unit::Items);
-    let mut timings = Vec::with_capacity(frames);
-    for frame in 0..warmup + frames {
-        let one = call().inspect_err(|_| bar.end())?;
-        if frame >= warmup {
-            timings.push(one);
-        }
+    let profiled = if matches.get_flag("layers") { frames.min(PROFILED) } else { 0 };
+    bar.begin("measuring", Some((warmup + frames + profiled) as u64), Unit::Items);
+    let mut measured =
+        Measured { timings: Vec::with_capacity(frames), profiles: Vec::with_capacity(profiled) };
+    for frame in 0..warmup + frames + profiled {
+        let done = if frame < warmup + frames {
+            call().map(|one| {
+                if frame >= warmup {
+                    measured.timings.push(one)
+                }
+            })
+        } else {
+            ProfiledCall::of(&mut call).map(|profile| measured.profiles.push(profile))
+        };
+        done.inspect_err(|_| bar.end())?;
         bar.advance(1);
         if bar.stopped() {
             break;
         }
     }
     bar.end();
-    Ok(timings)
+    Ok(measured)
 }
 
 /// Returns the percentile of each stage by itself (nearest rank).
@@ -221,7 +268,8 @@ fn print(measurement: &Measurement, json: bool) -> Result<()> {
         "{learner} on {runtime}\n\
          {frames} {workload}: {frames_per_second:.1} per second{real_time}\n\
          p50: {p50_ms}\np99: {p99_ms}{memory}"
-    ))
+    ))?;
+    measurement.layers.as_ref().map_or(Ok(()), |layers| stdout::print(layers.to_string().trim_end()))
 }
 
 #[cfg(test)]

@@ -108,11 +108,7 @@ fn first_values(
 
 /// Returns the inputs that the model's manifest describes.
 fn manifest_inputs(spec: &str, matches: &ArgMatches, bar: &ProgressBar) -> Result<Map<String, Json>> {
-    let container = match matches.get_one::<PathBuf>("model") {
-        Some(path) => path.clone(),
-        None => loading::pretrained(spec, matches, bar)?,
-    };
-    Ok(Model::open(&container)?.manifest().inputs.clone())
+    Ok(Model::open(loading::model(spec, matches, bar)?)?.manifest().inputs.clone())
 }
 
 /// Returns mono audio resampled to the model's rate; audio of several channels stays unchanged.

@@ -8,7 +8,7 @@ use opendr::{Error, Result, ResultExt};
 
 use super::participant;
 use super::version::Ros;
-use crate::{learner_flags, loading};
+use crate::{learner_flags, loading, viewing};
 
 /// Builds the grammar of one node; with `entry`, the learner's topics and parameters are flags.
 pub fn node_grammar(ros: Ros, entry: Option<&'static Entry>) -> Command {
@@ -42,6 +42,7 @@ pub fn node_grammar(ros: Ros, entry: Option<&'static Entry>) -> Command {
                 .value_name("N")
                 .help("QoS history depth: messages kept for a slow peer"),
         )
+        .arg(viewing::flag())
         .after_help(ros.examples());
     let lifecycle = || {
         Arg::new("lifecycle")

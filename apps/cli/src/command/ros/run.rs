@@ -10,13 +10,14 @@ use opendr::ros::{
     Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity, SharedSubscriptions,
     ros_args_from_ros1,
 };
+use opendr::viewer::Shown;
 
 use super::node::{node_grammar, options, set_parameters};
 use super::participant;
 use super::version::{ROS_ARGS, Ros};
 use crate::exit::Outcome;
 use crate::progress_bar::{ProgressBar, interrupted};
-use crate::{learner_flags, loading};
+use crate::{learner_flags, loading, viewing};
 
 /// Id of the argument that holds everything after `run`.
 const WORDS: &str = "words";
@@ -157,7 +158,17 @@ fn learner_node(
     let options = options(entry, matches, NodeParams::from_map(&of_node)?)?;
     let bar = ProgressBar::new(matches.get_flag("quiet"));
     let learner: Box<dyn AnyLearner> = loading::load(spec, &of_learner, matches, &bar)?;
-    let node = LearnerNode::new(graph, entry, learner, options, feeds)?;
+    let input = options.inputs.first().map(|topic| topic.topic.clone()).unwrap_or_default();
+    let viewer = viewing::of_items(entry.spec.class, matches, &bar)?;
+    let mut node = LearnerNode::new(graph, entry, learner, options, feeds)?;
+    if let Some(viewer) = viewer {
+        let mut index = 0;
+        node.observe(Box::new(move |value, outputs, processing_ms| {
+            let shown = viewing::shown(input.clone(), index, value, outputs);
+            viewer.show(Shown { stages: vec![("inference", processing_ms)], ..shown });
+            index += 1;
+        }));
+    }
     graph.log()(Severity::Info, &format!("{} is ready as {}", entry.spec.class, graph.name()));
     Ok(node)
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use opendr_engine::Result;
 use opendr_kernels::{
-    ByteConvolution, ByteDepthwise, ByteDepthwiseFilters, ByteFilters, ByteWeights, ByteZero,
+    ByteConvolution, ByteDepthwise, ByteDepthwiseFilters, ByteFilters, ByteWeights, ByteZero, LayerCost,
 };
 use opendr_onnx::proto::NodeProto;
 
@@ -165,6 +165,10 @@ impl Kernel for ConvStep {
         self.0.run(io.compute, x, io.write());
         Ok(())
     }
+
+    fn cost(&self) -> LayerCost {
+        self.0.cost()
+    }
 }
 
 struct DepthwiseStep(ByteDepthwise);
@@ -174,5 +178,9 @@ impl Kernel for DepthwiseStep {
         let x = io.read::<u8>(0);
         self.0.run(io.compute, x, io.write());
         Ok(())
+    }
+
+    fn cost(&self) -> LayerCost {
+        self.0.cost()
     }
 }
