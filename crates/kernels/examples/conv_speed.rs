@@ -15,6 +15,11 @@ fn main() {
     println!("# {} on 1 thread", compute.isa());
     for [size, channels, outputs, kernel, stride] in [
         [416, 3, 32, 3, 2],
+        [256, 3, 16, 7, 2],
+        [208, 12, 16, 3, 1],
+        [160, 16, 16, 3, 1],
+        [160, 16, 16, 1, 1],
+        [160, 16, 32, 1, 1],
         [208, 32, 64, 3, 2],
         [104, 64, 64, 3, 1],
         [104, 32, 32, 3, 1],
@@ -58,13 +63,22 @@ fn main() {
             },
         );
     }
-    for [size, channels, kernel, stride] in
-        [[112, 32, 3, 1], [112, 64, 3, 2], [56, 128, 3, 1], [28, 96, 5, 1], [14, 512, 3, 1]]
-    {
+    for [size, channels, kernel, stride] in [
+        [112, 32, 3, 1],
+        [112, 64, 3, 2],
+        [56, 128, 3, 1],
+        [28, 96, 5, 1],
+        [14, 512, 3, 1],
+        [7, 960, 3, 1],
+        [28, 72, 3, 1],
+        [28, 120, 5, 1],
+        [14, 480, 3, 2],
+    ] {
         let window = square(size, kernel, stride);
         let output = window.output[0];
-        let x = vec![0.5; size * size * channels];
-        let mut y = vec![0.0; output * output * channels];
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        let x = aligned(&mut x, size * size * channels);
+        let y = aligned(&mut y, output * output * channels);
         let filters =
             DepthwiseFilters::new(&vec![0.1; channels * kernel * kernel], channels, window.kernel, None);
         let depthwise = DepthwiseConvolution {
@@ -77,9 +91,16 @@ fn main() {
         };
         let operations = (2 * output * output * channels * kernel * kernel) as f64;
         report(&format!("depthwise {size}x{size}x{channels} {kernel}x{kernel}/{stride}"), operations, || {
-            depthwise.run(&compute, &x, &mut y);
+            depthwise.run(&compute, x, y);
         });
     }
+}
+
+/// Returns `length` numbers that begin at a cache line, as those of the executor's arena.
+fn aligned(numbers: &mut Vec<f32>, length: usize) -> &mut [f32] {
+    numbers.resize(length + 16, 0.5);
+    let first = numbers.as_ptr().align_offset(64);
+    &mut numbers[first..][..length]
 }
 
 fn square(size: usize, kernel: usize, stride: usize) -> Window {

@@ -3,7 +3,7 @@
 use opendr_engine::Result;
 use opendr_onnx::proto::{AttributeProto, NodeProto};
 
-use super::elementwise::Rows;
+use super::broadcast::Rows;
 use super::inputs::{optional, required};
 use super::matmul::batched;
 use super::movement::concat;

@@ -8,7 +8,7 @@ use opendr_kernels::{
 };
 use opendr_onnx::proto::NodeProto;
 
-use super::fusion::{self, Fused};
+use super::fusion::{self, Fused, Fusible};
 use super::inputs::{optional, required};
 use crate::attributes::Attributes;
 use crate::constant::Constant;
@@ -105,13 +105,15 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
     let shape = output_shape(&window, dims[0], outputs, rank);
     count(&shape)?;
     let bias = bias.as_ref().and_then(|bias| bias.floats());
+    let fusible = Fusible { axis: 1, bias: bias.is_none(), sum: true };
     if channels == 1 && groups == outputs && groups > 1 {
         let x = planner.channels_last(x)?;
+        let fused = fusion::after(planner, node, &shape, Fusible { sum: false, ..fusible });
+        let bias = bias.or(fused.bias.as_deref());
         let filters = planner.packed(0, || {
             Packed::Depthwise(Arc::new(DepthwiseFilters::new(floats, outputs, window.kernel, bias)))
         });
         let Packed::Depthwise(filters) = filters else { return Err(node.refused("weights of two kinds")) };
-        let fused = fusion::after(planner, node, &shape, false);
         let finish = finish(&fused, |slopes| filters.padded(slopes));
         let step = DepthwiseStep(DepthwiseConvolution {
             filters,
@@ -128,12 +130,13 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
     let planar = groups == 1 && dims[1] <= PLANAR && !planner.is_channels_last(x) && window.kernel != [1, 1];
     let x = if planar { planner.plain(x)? } else { planner.channels_last(x)? };
     let compute = planner.compute.clone();
+    let fused = fusion::after(planner, node, &shape, fusible);
+    let bias = bias.or(fused.bias.as_deref());
     let filters = planner.packed(1 + u8::from(planar), || {
         let sizes = [groups, outputs / groups, channels];
         Packed::Dense(Arc::new(Filters::new(&compute, floats, sizes, window.kernel, bias, planar)))
     });
     let Packed::Dense(filters) = filters else { return Err(node.refused("weights of two kinds")) };
-    let fused = fusion::after(planner, node, &shape, true);
     let finish = finish(&fused, |slopes| filters.padded(slopes));
     let y = Strides::channels_last(window.output, outputs);
     let conv = Convolution {

@@ -11,7 +11,7 @@ use opendr_kernels::{Convolution, Filters, Finish, LayerCost, Strides, Window};
 use opendr_onnx::proto::NodeProto;
 
 use super::conv::{ConvStep, constant_bias, finish};
-use super::fusion;
+use super::fusion::{self, Fusible};
 use super::inputs::required;
 use crate::attributes::Attributes;
 use crate::constant::Constant;
@@ -209,7 +209,9 @@ fn by_phases(
         ..whole_y
     };
     let x = planner.channels_last(x)?;
-    let fused = fusion::after(planner, node, &shape, true);
+    let fusible = Fusible { axis: 1, bias: bias.is_none(), sum: true };
+    let fused = fusion::after(planner, node, &shape, fusible);
+    let bias = bias.or(fused.bias.as_deref());
     let compute = planner.compute.clone();
     let mut phases = Vec::new();
     for (i, row) in rows.iter().enumerate() {

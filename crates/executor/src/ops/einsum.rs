@@ -204,7 +204,7 @@ impl Sum<'_> {
         let matrix = |sizes: [usize; 2]| stack.into_iter().chain(sizes).collect::<Vec<_>>();
         let a = planner.alias(a.id, matrix([size(&rows)?, size(&depth)?]), Layout::Plain);
         let b = planner.alias(b.id, matrix([size(&depth)?, size(&columns)?]), Layout::Plain);
-        let product = multiply(planner, self.node, [a, b], number)?;
+        let product = multiply(planner, self.node, [a, b], number, false)?;
         let labels = [batch, rows, columns].concat();
         let id = planner.alias(product, self.shape(&labels), Layout::Plain);
         Ok(Operand { id, labels })

@@ -1,16 +1,18 @@
 //! Operators that are applied to each element, with broadcasting.
 
 use opendr_engine::Result;
-use opendr_kernels::{Binary, Operand, Unary};
+use opendr_kernels::{Binary, Number, Operand, Unary};
 use opendr_onnx::proto::NodeProto;
 
+use super::broadcast::{Rows, aligned};
+use super::cast::converted;
 use super::functions;
 use super::inputs::{optional, required};
 use crate::attributes::Attributes;
 use crate::constant::Constant;
 use crate::io::{Io, Kernel};
 use crate::planner::{Id, Layout, Planner};
-use crate::tensor::{Kind, count};
+use crate::tensor::Kind;
 use crate::value::channels_to_end;
 
 /// Returns the function of a node of one input.
@@ -164,47 +166,6 @@ pub(crate) fn prelu(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
     Ok(vec![combine(planner, node, Function::PRelu, a, b)?])
 }
 
-/// Returns the shape that several ones broadcast to.
-pub(crate) fn broadcast_shape(node: &NodeProto, shapes: &[Vec<usize>]) -> Result<Vec<usize>> {
-    let rank = shapes.iter().map(Vec::len).max().unwrap_or(0);
-    let mut all = vec![1; rank];
-    for shape in shapes {
-        for (to, &dim) in all[rank - shape.len()..].iter_mut().zip(shape) {
-            match (*to, dim) {
-                (_, 1) => {}
-                (1, _) => *to = dim,
-                (to, dim) if to == dim => {}
-                _ => return Err(node.damaged(&format!("shapes {shapes:?} do not broadcast"))),
-            }
-        }
-    }
-    count(&all)?;
-    Ok(all)
-}
-
-/// Brings operands to one layout; returns them with the shape and the layout of the result.
-fn aligned(planner: &mut Planner<'_>, node: &NodeProto, ids: &[Id]) -> Result<(Vec<Id>, Vec<usize>, Layout)> {
-    let shapes: Vec<Vec<usize>> = ids.iter().map(|&id| planner.shape(id)).collect();
-    let shape = broadcast_shape(node, &shapes)?;
-    let rank = shape.len();
-    let last = rank > 2 && ids.iter().any(|&id| planner.is_channels_last(id) && planner.rank(id) == rank);
-    let mut laid = Vec::new();
-    for &id in ids {
-        laid.push(if !last || shapes.is_empty() {
-            planner.plain(id)?
-        } else if planner.rank(id) == rank {
-            planner.channels_last(id)?
-        } else {
-            let plain = planner.plain(id)?;
-            let mut dims = vec![1; rank - planner.rank(plain)];
-            dims.extend(planner.shape(plain));
-            let wide = planner.alias(plain, dims, Layout::Plain);
-            planner.channels_last(wide)?
-        });
-    }
-    Ok((laid, shape, if last { Layout::ChannelsLast } else { Layout::Plain }))
-}
-
 /// Applies a function to two values.
 pub(crate) fn combine(
     planner: &mut Planner<'_>,
@@ -249,65 +210,6 @@ pub(crate) fn combine(
     planner.emit_one(step, &ids, if truths { Kind::Bool } else { kind }, shape, layout)
 }
 
-/// Rows of a result, and where they begin in each operand.
-#[derive(Debug)]
-pub(crate) struct Rows {
-    /// Length and strides of the outer dimensions.
-    outer: Vec<(usize, Vec<usize>)>,
-    pub(crate) length: usize,
-    /// Per operand, whether it has a number for each element of a row, or one for all.
-    pub(crate) is_row: Vec<bool>,
-}
-
-impl Rows {
-    pub(crate) fn new(dims: &[usize], operands: &[Vec<usize>]) -> Self {
-        let rank = dims.len();
-        let strides: Vec<Vec<usize>> = operands
-            .iter()
-            .map(|shape| {
-                let own = crate::remap::strides(shape);
-                let missing = rank - shape.len();
-                (0..rank)
-                    .map(|d| d.checked_sub(missing).filter(|&d| shape[d] != 1).map_or(0, |d| own[d]))
-                    .collect()
-            })
-            .collect();
-        let mut merged: Vec<(usize, Vec<usize>)> = Vec::new();
-        for (d, &length) in dims.iter().enumerate().filter(|(_, length)| **length != 1) {
-            let steps: Vec<usize> = strides.iter().map(|strides| strides[d]).collect();
-            match merged.last_mut() {
-                Some((outer, outer_steps))
-                    if outer_steps.iter().zip(&steps).all(|(outer, step)| *outer == step * length) =>
-                {
-                    *outer *= length;
-                    *outer_steps = steps;
-                }
-                _ => merged.push((length, steps)),
-            }
-        }
-        let (length, steps) = merged.pop().unwrap_or_else(|| (1, vec![1; operands.len()]));
-        Self { outer: merged, length, is_row: steps.iter().map(|&step| step != 0).collect() }
-    }
-
-    /// Returns the first element of a row in an operand.
-    #[inline]
-    pub(crate) fn start(&self, mut row: usize, operand: usize) -> usize {
-        let mut at = 0;
-        for (length, steps) in self.outer.iter().rev() {
-            at += row % length * steps[operand];
-            row /= length;
-        }
-        at
-    }
-
-    /// Returns the elements of a row of an operand: as many as the row has, or one.
-    #[inline]
-    pub(crate) fn of<'a, T>(&self, x: &'a [T], row: usize, operand: usize, length: usize) -> &'a [T] {
-        let start = self.start(row, operand);
-        &x[start..start + if self.is_row[operand] { length } else { 1 }]
-    }
-}
-
 struct BinaryStep {
     function: Function,
     kind: Kind,
@@ -328,13 +230,9 @@ impl Kernel for BinaryStep {
             (Kind::F32, FloatMod) => self.each(io, |a: f32, b: f32| a % b),
             (Kind::F32, Mod) => self.each(io, python_remainder),
             (Kind::F32, PRelu) => self.each(io, |x: f32, slope: f32| if x < 0.0 { slope * x } else { x }),
-            (Kind::F32, function) => self.each(io, move |a: f32, b: f32| compared(function, &a, &b)),
-            (Kind::I64, Equal | Less | LessOrEqual | Greater | GreaterOrEqual) => {
-                self.each(io, |a: i64, b: i64| compared(self.function, &a, &b));
-            }
-            (Kind::I32, Equal | Less | LessOrEqual | Greater | GreaterOrEqual) => {
-                self.each(io, |a: i32, b: i32| compared(self.function, &a, &b));
-            }
+            (Kind::F32, _) => self.compare::<f32>(io),
+            (Kind::I64, Equal | Less | LessOrEqual | Greater | GreaterOrEqual) => self.compare::<i64>(io),
+            (Kind::I32, Equal | Less | LessOrEqual | Greater | GreaterOrEqual) => self.compare::<i32>(io),
             (Kind::I64, function) => self.each(io, move |a: i64, b: i64| integer(function, a, b)),
             (Kind::I32, function) => {
                 self.each(io, move |a: i32, b: i32| integer(function, a.into(), b.into()) as i32);
@@ -342,7 +240,7 @@ impl Kernel for BinaryStep {
             (_, And) => self.each(io, |a: u8, b: u8| a & b),
             (_, Or) => self.each(io, |a: u8, b: u8| a | b),
             (_, Xor) => self.each(io, |a: u8, b: u8| a ^ b),
-            (_, function) => self.each(io, move |a: u8, b: u8| compared(function, &a, &b)),
+            _ => self.compare::<u8>(io),
         }
         Ok(())
     }
@@ -358,16 +256,6 @@ fn python_remainder(a: f32, b: f32) -> f32 {
     } else {
         rest
     }
-}
-
-fn compared<T: PartialOrd>(function: Function, a: &T, b: &T) -> u8 {
-    u8::from(match function {
-        Function::Less => a < b,
-        Function::LessOrEqual => a <= b,
-        Function::Greater => a > b,
-        Function::GreaterOrEqual => a >= b,
-        _ => a == b,
-    })
 }
 
 fn integer(function: Function, a: i64, b: i64) -> i64 {
@@ -391,6 +279,9 @@ fn integer(function: Function, a: i64, b: i64) -> i64 {
 
 impl BinaryStep {
     fn fast(&self, io: &mut Io<'_>, function: Binary) {
+        if let (Some(repeated), 1..SHORT) = (self.rows.repeated(), self.rows.length) {
+            return self.repeat(io, function, repeated);
+        }
         let (a, b, y) = (io.read::<f32>(0), io.read::<f32>(1), io.write::<f32>());
         let rows = &self.rows;
         let isa = io.compute.isa();
@@ -409,7 +300,7 @@ impl BinaryStep {
         if y.is_empty() {
             return;
         }
-        if rows.outer.is_empty() {
+        if rows.is_one() {
             const PIECE: usize = 1 << 14;
             io.compute.pool().run_on_pieces(y, PIECE, |index, y| {
                 let at = index * PIECE;
@@ -427,23 +318,49 @@ impl BinaryStep {
             .run_on_pieces(y, per_piece * rows.length, |index, y| piece(index * per_piece, y, rows.length));
     }
 
-    fn each<T: opendr_kernels::Number, U: opendr_kernels::Number>(
-        &self,
-        io: &mut Io<'_>,
-        function: impl Fn(T, T) -> U,
-    ) {
+    /// Computes rows with one row of the other operand: as many at a time as fill some registers.
+    fn repeat(&self, io: &mut Io<'_>, function: Binary, repeated: usize) {
+        let (row, whole, y) = (io.read::<f32>(repeated), io.read::<f32>(1 - repeated), io.write::<f32>());
+        let isa = io.compute.isa();
+        let mut pattern = [0.0; 4 * SHORT];
+        let size = pattern.len() / row.len() * row.len();
+        pattern[..size].chunks_exact_mut(row.len()).for_each(|to| to.copy_from_slice(row));
+        let piece = (1 << 14) / size * size;
+        io.compute.pool().run_on_pieces(y, piece, |index, y| {
+            let whole = &whole[index * piece..][..y.len()];
+            for (y, whole) in y.chunks_mut(size).zip(whole.chunks(size)) {
+                let (row, whole) = (Operand::Row(&pattern[..y.len()]), Operand::Row(whole));
+                let (a, b) = if repeated == 0 { (row, whole) } else { (whole, row) };
+                function.apply(isa, a, b, y);
+            }
+        });
+    }
+
+    fn compare<T: Number + PartialOrd>(&self, io: &mut Io<'_>) {
+        match self.function {
+            Function::Less => self.each(io, |a: T, b: T| u8::from(a < b)),
+            Function::LessOrEqual => self.each(io, |a: T, b: T| u8::from(a <= b)),
+            Function::Greater => self.each(io, |a: T, b: T| u8::from(a > b)),
+            Function::GreaterOrEqual => self.each(io, |a: T, b: T| u8::from(a >= b)),
+            _ => self.each(io, |a: T, b: T| u8::from(a == b)),
+        }
+    }
+
+    fn each<T: Number, U: Number>(&self, io: &mut Io<'_>, function: impl Fn(T, T) -> U) {
         let (a, b, y) = (io.read::<T>(0), io.read::<T>(1), io.write::<U>());
         for (row, y) in y.chunks_mut(self.rows.length.max(1)).enumerate() {
             let (a, b) = (self.rows.of(a, row, 0, y.len()), self.rows.of(b, row, 1, y.len()));
-            for (i, y) in y.iter_mut().enumerate() {
-                *y = function(
-                    a[if self.rows.is_row[0] { i } else { 0 }],
-                    b[if self.rows.is_row[1] { i } else { 0 }],
-                );
+            match (a, b) {
+                (a, &[b]) => y.iter_mut().zip(a).for_each(|(y, &a)| *y = function(a, b)),
+                (&[a], b) => y.iter_mut().zip(b).for_each(|(y, &b)| *y = function(a, b)),
+                (a, b) => y.iter_mut().zip(a.iter().zip(b)).for_each(|(y, (&a, &b))| *y = function(a, b)),
             }
         }
     }
 }
+
+/// Length of rows below which several are computed at a time.
+const SHORT: usize = 64;
 
 fn part(x: &[f32], start: usize, is_row: bool, length: usize) -> Operand<'_> {
     if is_row { Operand::Row(&x[start..start + length]) } else { Operand::Scalar(x[start]) }
@@ -503,75 +420,5 @@ impl Kernel for SelectStep {
             }
         });
         Ok(())
-    }
-}
-
-pub(crate) fn cast(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
-    let x = required(node, inputs, 0)?;
-    let to = i32::try_from(node.int_or("to", 0)).map_err(|_| node.damaged("attribute \"to\""))?;
-    let to = Kind::from_onnx(to, &node.name)?;
-    if to == Kind::F16 {
-        return Err(node.refused("16-bit floats"));
-    }
-    Ok(vec![converted(planner, x, to)?])
-}
-
-pub(crate) fn cast_like(
-    planner: &mut Planner<'_>,
-    node: &NodeProto,
-    inputs: &[Option<Id>],
-) -> Result<Vec<Id>> {
-    let (x, like) = (required(node, inputs, 0)?, required(node, inputs, 1)?);
-    let to = planner.kind(like);
-    if to == Kind::F16 {
-        return Err(node.refused("16-bit floats"));
-    }
-    Ok(vec![converted(planner, x, to)?])
-}
-
-fn converted(planner: &mut Planner<'_>, x: Id, to: Kind) -> Result<Id> {
-    let value = planner.value(x).clone();
-    if value.kind == to {
-        return Ok(x);
-    }
-    planner.emit_one(CastStep { from: value.kind, to }, &[x], to, value.shape, value.layout)
-}
-
-struct CastStep {
-    from: Kind,
-    to: Kind,
-}
-
-impl Kernel for CastStep {
-    fn run(&self, io: &mut Io<'_>) -> Result<()> {
-        match self.from {
-            Kind::F32 => self.write(io, |x: f32| (f64::from(x), x as i64)),
-            Kind::I64 => self.write(io, |x: i64| (x as f64, x)),
-            Kind::I32 => self.write(io, |x: i32| (f64::from(x), i64::from(x))),
-            Kind::U8 | Kind::Bool => self.write(io, |x: u8| (f64::from(x), i64::from(x))),
-            Kind::I8 => self.write(io, |x: i8| (f64::from(x), i64::from(x))),
-            Kind::F16 => self.write(io, |x: u16| {
-                let x = opendr_onnx::float_from_half(x);
-                (f64::from(x), x as i64)
-            }),
-        }
-        Ok(())
-    }
-}
-
-impl CastStep {
-    fn write<T: opendr_kernels::Number>(&self, io: &mut Io<'_>, read: impl Fn(T) -> (f64, i64)) {
-        let x = io.read::<T>(0);
-        match self.to {
-            Kind::F32 => io.write::<f32>().iter_mut().zip(x).for_each(|(y, &x)| *y = read(x).0 as f32),
-            Kind::I64 => io.write::<i64>().iter_mut().zip(x).for_each(|(y, &x)| *y = read(x).1),
-            Kind::I32 => io.write::<i32>().iter_mut().zip(x).for_each(|(y, &x)| *y = read(x).1 as i32),
-            Kind::U8 => io.write::<u8>().iter_mut().zip(x).for_each(|(y, &x)| *y = read(x).1 as u8),
-            Kind::I8 => io.write::<i8>().iter_mut().zip(x).for_each(|(y, &x)| *y = read(x).1 as i8),
-            Kind::Bool => {
-                io.write::<u8>().iter_mut().zip(x).for_each(|(y, &x)| *y = u8::from(read(x).0 != 0.0))
-            }
-            Kind::F16 => {}
-        }
     }
 }

@@ -4,12 +4,15 @@ use opendr_kernels::Unary;
 use opendr_onnx::proto::NodeProto;
 
 use super::elementwise::{clip_of, unary_of};
+use crate::constant::Constant;
 use crate::planner::{Id, Planner};
 use crate::tensor::Kind;
 
 /// The nodes that are computed with another one.
 #[derive(Debug, Default)]
 pub(crate) struct Fused {
+    /// Numbers that are added first, one per channel.
+    pub(crate) bias: Option<Vec<f32>>,
     pub(crate) activation: Unary,
     pub(crate) slopes: Option<Vec<f32>>,
     pub(crate) residual: Option<Id>,
@@ -27,8 +30,19 @@ impl Fused {
     }
 }
 
+/// What can be computed with a node.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fusible {
+    /// Axis of the channels.
+    pub(crate) axis: usize,
+    /// Whether the node adds a bias: it has none of its own.
+    pub(crate) bias: bool,
+    /// Whether the node adds a tensor of the shape of its output.
+    pub(crate) sum: bool,
+}
+
 /// Returns what can be computed with `node`, whose first output has the given shape.
-pub(crate) fn after(planner: &Planner<'_>, node: &NodeProto, shape: &[usize], with_sum: bool) -> Fused {
+pub(crate) fn after(planner: &Planner<'_>, node: &NodeProto, shape: &[usize], fusible: Fusible) -> Fused {
     let mut fused = Fused::default();
     let Some(mut name) = node.output.first().cloned() else { return fused };
     let mut acts = false;
@@ -56,7 +70,7 @@ pub(crate) fn after(planner: &Planner<'_>, node: &NodeProto, shape: &[usize], wi
                 "Clip" if others_known => clip_of(planner, next, &inputs),
                 "Max" | "Min" => bounded(planner, next, &inputs),
                 "PRelu" => {
-                    fused.slopes = slopes(planner, &inputs, shape);
+                    fused.slopes = slopes(planner, &inputs, shape, fusible.axis);
                     fused.slopes.is_some().then_some(Unary::Identity)
                 }
                 _ => unary_of(next),
@@ -69,8 +83,20 @@ pub(crate) fn after(planner: &Planner<'_>, node: &NodeProto, shape: &[usize], wi
                 continue;
             }
         }
-        if with_sum && fused.residual.is_none() && next.op_type == "Add" && next.input.len() == 2 {
+        if next.op_type == "Add" && next.input.len() == 2 && fused.residual.is_none() {
             let other = if next.input[0] == name { &next.input[1] } else { &next.input[0] };
+            if fusible.bias && !acts && fused.bias.is_none() {
+                let constant = planner.named(other).and_then(|other| planner.constant(other));
+                fused.bias = constant.and_then(|constant| per_channel(&constant, shape, fusible.axis));
+                if fused.bias.is_some() {
+                    fused.nodes.push(index);
+                    name.clone_from(&next.output[0]);
+                    continue;
+                }
+            }
+            if !fusible.sum {
+                break;
+            }
             let fits =
                 |id: &Id| planner.shape(*id) == shape && planner.kind(*id) == Kind::F32 && *other != name;
             if let Some(residual) = planner.named(other).filter(fits) {
@@ -131,18 +157,22 @@ fn bounded(planner: &Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Op
 }
 
 /// Returns one slope per channel.
-fn slopes(planner: &Planner<'_>, inputs: &[Option<Id>], shape: &[usize]) -> Option<Vec<f32>> {
+fn slopes(planner: &Planner<'_>, inputs: &[Option<Id>], shape: &[usize], axis: usize) -> Option<Vec<f32>> {
     let constant = planner.constant(inputs.get(1).copied().flatten()?)?;
-    let values = constant.floats()?;
-    let channels = *shape.get(1)?;
-    if let [slope] = values {
-        return Some(vec![*slope; channels]);
+    match constant.floats()? {
+        [slope] => Some(vec![*slope; *shape.get(axis)?]),
+        _ => per_channel(&constant, shape, axis),
     }
+}
+
+/// Returns a constant that broadcasts to one number per channel.
+fn per_channel(constant: &Constant, shape: &[usize], axis: usize) -> Option<Vec<f32>> {
+    let (values, channels) = (constant.floats()?, *shape.get(axis)?);
     let missing = shape.len().checked_sub(constant.shape.len())?;
     let along = constant
         .shape
         .iter()
         .enumerate()
-        .all(|(d, &dim)| if d + missing == 1 { dim == channels } else { dim == 1 });
+        .all(|(d, &dim)| if d + missing == axis { dim == channels } else { dim == 1 });
     (along && values.len() == channels).then(|| values.to_vec())
 }

@@ -27,7 +27,7 @@ pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
     let weights = planner.constant(b).filter(|b| alpha == 1.0 && !b.shape.contains(&0));
     let Some(weights) = weights else {
         let b = if is_transposed { flipped(planner, b)? } else { planner.plain(b)? };
-        let product = multiply(planner, node, [a, b], 0)?;
+        let product = multiply(planner, node, [a, b], 0, false)?;
         let product = scaled(planner, node, product, alpha)?;
         return sum(planner, node, product, c, beta);
     };
@@ -43,7 +43,8 @@ pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
         c.and_then(|c| planner.constant(c)).filter(|bias| beta == 1.0 && bias.shape.last() == Some(&columns));
     let bias = bias.as_ref().and_then(|bias| bias.floats()).filter(|bias| bias.len() == columns);
     let sizes = [rows, depth, columns];
-    let weights = Weights { constant: &weights, is_transposed, bias, product: 0 };
+    let is_last = c.is_none() || bias.is_some();
+    let weights = Weights { constant: &weights, is_transposed, bias, product: 0, is_last };
     let product = with_weights(planner, node, a, &weights, sizes, shape)?;
     sum(planner, node, product, c.filter(|_| bias.is_none()), beta)
 }

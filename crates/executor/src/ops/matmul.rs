@@ -3,9 +3,11 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{Convolution, Filters, Finish, LayerCost, Matrix, MatrixMut, Product, Strides, Window};
+use opendr_kernels::{Convolution, Filters, LayerCost, Matrix, MatrixMut, Product, Strides, Window};
 use opendr_onnx::proto::NodeProto;
 
+use super::conv::{ConvStep, finish};
+use super::fusion::{self, Fused, Fusible};
 use super::inputs::required;
 use crate::attributes::Attributes;
 use crate::constant::Constant;
@@ -16,15 +18,17 @@ use crate::tensor::{Kind, count};
 
 pub(crate) fn matmul(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let (a, b) = (required(node, inputs, 0)?, required(node, inputs, 1)?);
-    Ok(vec![multiply(planner, node, [a, b], 0)?])
+    Ok(vec![multiply(planner, node, [a, b], 0, true)?])
 }
 
-/// Multiplies matrices, or stacks of them that broadcast. `product` counts the products of the node.
+/// Multiplies matrices, or stacks of them that broadcast. `product` counts the products of the node, the last of
+/// which is its output.
 pub(super) fn multiply(
     planner: &mut Planner<'_>,
     node: &NodeProto,
     [a, b]: [Id; 2],
     product: u8,
+    is_last: bool,
 ) -> Result<Id> {
     let (a, b) = (planner.plain(a)?, planner.plain(b)?);
     if planner.kind(a) != Kind::F32 || planner.kind(b) != Kind::F32 {
@@ -34,7 +38,7 @@ pub(super) fn multiply(
     let [rows, depth, columns] = sizes;
     if let Some(constant) = planner.constant(b).filter(|b| b.shape.len() == 2 && depth > 0 && columns > 0) {
         let all_rows = count(&planner.shape(a))? / depth;
-        let weights = Weights { constant: &constant, is_transposed: false, bias: None, product };
+        let weights = Weights { constant: &constant, is_transposed: false, bias: None, product, is_last };
         return with_weights(planner, node, a, &weights, [all_rows, depth, columns], shape);
     }
     let (left, right) = (left.offsets(rows * depth), right.offsets(depth * columns));
@@ -108,7 +112,7 @@ impl Shapes {
         }
         let outer_left = left[..left.len() - 2].to_vec();
         let outer_right = right[..right.len() - 2].to_vec();
-        let outer = super::elementwise::broadcast_shape(node, &[outer_left.clone(), outer_right.clone()])?;
+        let outer = super::broadcast::broadcast_shape(node, &[outer_left.clone(), outer_right.clone()])?;
         let mut shape = outer.clone();
         if !vector_left {
             shape.push(rows);
@@ -133,6 +137,8 @@ pub(super) struct Weights<'a> {
     pub(super) bias: Option<&'a [f32]>,
     /// Number of the product within its node.
     pub(super) product: u8,
+    /// Whether the product with the bias is the output of the node, so that what follows can be computed with it.
+    pub(super) is_last: bool,
 }
 
 /// Multiplies rows by constant weights, which are packed once.
@@ -144,9 +150,16 @@ pub(super) fn with_weights(
     [rows, depth, columns]: [usize; 3],
     shape: Vec<usize>,
 ) -> Result<Id> {
-    let &Weights { constant, is_transposed, bias, product } = weights;
+    let &Weights { constant, is_transposed, bias, product, is_last } = weights;
     let floats = constant.floats().ok_or_else(|| node.refused("weights that are not floats"))?;
     let compute = planner.compute.clone();
+    let fused = if is_last && shape.last() == Some(&columns) {
+        let fusible = Fusible { axis: shape.len() - 1, bias: bias.is_none(), sum: true };
+        fusion::after(planner, node, &shape, fusible)
+    } else {
+        Fused::default()
+    };
+    let bias = bias.or(fused.bias.as_deref());
     let filters = planner.packed(product, || {
         Packed::Dense(Arc::new(Filters::from_matrix(&compute, floats, [depth, columns], is_transposed, bias)))
     });
@@ -156,22 +169,16 @@ pub(super) fn with_weights(
         Window { kernel: [1, 1], strides: [1, 1], dilations: [1, 1], pads: [0, 0], input, output: input };
     let y = Strides::channels_last(input, columns);
     let x = Strides::channels_last(input, depth);
-    let conv = Convolution { filters, window, batch: 1, x, y, residual: y, finish: Finish::default() };
-    planner.emit_one(RowsStep(conv), &[a], Kind::F32, shape, Layout::Plain)
-}
-
-struct RowsStep(Convolution);
-
-impl Kernel for RowsStep {
-    fn run(&self, io: &mut Io<'_>) -> Result<()> {
-        let x = io.read::<f32>(0);
-        self.0.run(io.compute, x, None, io.write());
-        Ok(())
-    }
-
-    fn cost(&self) -> LayerCost {
-        self.0.cost()
-    }
+    let finish = finish(&fused, |slopes| filters.padded(slopes));
+    let conv = Convolution { filters, window, batch: 1, x, y, residual: y, finish };
+    let residual = match fused.residual {
+        Some(residual) => Some(planner.plain(residual)?),
+        None => None,
+    };
+    let ids = planner.emit(ConvStep(conv), &[Some(a), residual], &[(Kind::F32, shape, Layout::Plain)])?;
+    let y = ids.first().copied().ok_or_else(|| node.damaged("its outputs"))?;
+    fused.absorb(planner, y);
+    Ok(y)
 }
 
 struct ProductStep {

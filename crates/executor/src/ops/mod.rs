@@ -1,7 +1,9 @@
 //! The operators: each builds the steps of a node whose input shapes are known.
 
 mod attention;
+mod broadcast;
 mod bytes;
+mod cast;
 mod conv;
 mod conv_integer;
 mod conv_transpose;
@@ -78,8 +80,8 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Attention", attention::build),
     ("AveragePool", pool::pool),
     ("BatchNormalization", normalise::batch),
-    ("Cast", elementwise::cast),
-    ("CastLike", elementwise::cast_like),
+    ("Cast", cast::cast),
+    ("CastLike", cast::cast_like),
     ("Ceil", functions::build),
     ("Celu", functions::build),
     ("Clip", elementwise::clip),

@@ -63,7 +63,7 @@ pub(crate) fn expand(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     let x = required(node, inputs, 0)?;
     let x = planner.plain(x)?;
     let wanted = sizes(node, &planner.ints(node, required(node, inputs, 1)?)?)?;
-    let shape = super::elementwise::broadcast_shape(node, &[planner.shape(x), wanted])?;
+    let shape = super::broadcast::broadcast_shape(node, &[planner.shape(x), wanted])?;
     count(&shape)?;
     let dims = planner.shape(x);
     let missing = shape.len() - dims.len();

@@ -73,14 +73,19 @@ impl Kernel for SoftmaxStep {
                 // A row of minus infinities has no maximum to subtract.
                 let largest = if largest.is_finite() { largest } else { 0.0 };
                 y.iter_mut().zip(x).for_each(|(y, x)| *y = x - largest);
-                if self.is_log {
+            }
+            if self.is_log {
+                for y in y.chunks_mut(length) {
                     let sum: f32 = y.iter().map(|y| y.exp()).sum();
                     Binary::Sub.apply_scalar(isa, y, sum.ln());
-                } else {
-                    opendr_kernels::exp_in_place(isa, y);
-                    let sum: f32 = y.iter().sum();
-                    Binary::Mul.apply_scalar(isa, y, 1.0 / sum);
                 }
+                return;
+            }
+            // All rows at once: short ones would leave registers empty.
+            opendr_kernels::exp_in_place(isa, y);
+            for y in y.chunks_mut(length) {
+                let scale = 1.0 / y.iter().sum::<f32>();
+                y.iter_mut().for_each(|y| *y *= scale);
             }
         });
         Ok(())

@@ -4,7 +4,7 @@ use opendr_engine::Result;
 use opendr_kernels::{ByteOutput, ByteZero};
 use opendr_onnx::proto::NodeProto;
 
-use super::elementwise::Rows;
+use super::broadcast::Rows;
 use super::inputs::{axis, optional, required};
 use crate::attributes::Attributes;
 use crate::io::{Io, Kernel};

@@ -89,3 +89,125 @@ fn a_convolution_with_a_sum_and_an_activation_is_one_step() {
     assert_eq!(sums[0].tensor_bytes, 3 * 6 * 4);
     assert!(sums[0].cost.weight_bytes >= 16, "{:?}", sums[0]);
 }
+
+fn constant(shape: Vec<usize>, values: &[f32]) -> GraphTensor {
+    GraphTensor::constant(opendr_onnx::Array::new(shape, opendr_onnx::Data::Float(values.to_vec())).unwrap())
+}
+
+fn outputs(executor: &mut Executor, shape: &[usize], x: &[f32]) -> Vec<Vec<f32>> {
+    let mut all = Vec::new();
+    let inputs = [Tensor { shape, data: Data::F32(x) }];
+    let run = executor.run(&inputs, &mut |outputs| {
+        for output in outputs {
+            all.push(match output.data {
+                Data::F32(values) => values.to_vec(),
+                Data::I64(values) => values.iter().map(|&value| value as f32).collect(),
+                _ => panic!("{output:?}"),
+            });
+        }
+        Ok(())
+    });
+    run.unwrap();
+    all
+}
+
+#[test]
+fn a_product_with_a_bias_a_sum_and_an_activation_is_one_step() {
+    let mut graph = Builder::default();
+    let dims = vec![Some(1), Some(3), Some(2)];
+    let x = graph.input("x", ElementType::Float, dims.clone(), &[]);
+    let weights = constant(vec![2, 2], &[1.0, 2.0, 3.0, -1.0]);
+    let bias = constant(vec![1, 1, 2], &[0.5, -8.0]);
+    let mut add = |name: &str, operator: &'static str, inputs: [&GraphTensor; 2]| {
+        graph.add(name, Operator::new(operator), &inputs, ElementType::Float, dims.clone()).unwrap()
+    };
+    let product = add("product", "MatMul", [&x, &weights]);
+    let biased = add("biased", "Add", [&bias, &product]);
+    let sum = add("sum", "Add", [&biased, &x]);
+    let relu = graph.add("relu", Operator::new("Relu"), &[&sum], ElementType::Float, dims).unwrap();
+    graph.output("y", &relu, "", &[]).unwrap();
+    let bytes = bytes_from_model(&model_from_graph(graph.finish("product")));
+    let mut executor = Executor::open(&bytes, Compute::single()).unwrap();
+    let x = [1.0, 2.0, 0.0, 1.0, -4.0, 2.0];
+    // Rows: [7, 0], [3, -1], [2, -10] + bias + x.
+    assert_eq!(outputs(&mut executor, &[1, 3, 2], &x), [[8.5, 0.0, 3.5, 0.0, 0.0, 0.0]]);
+    let inputs = [Tensor { shape: &[1, 3, 2], data: Data::F32(&x) }];
+    let layers = executor.profile(&inputs, &mut |_| Ok(())).unwrap();
+    assert_eq!(layers.len(), 1, "{layers:?}");
+}
+
+#[test]
+fn a_node_between_a_product_and_its_sum_is_not_left_out() {
+    // `alpha` and a matrix that is not a bias: the activation must follow the sum.
+    for (alpha, rows) in [(1.0, 2), (0.5, 2), (0.5, 1)] {
+        let mut graph = Builder::default();
+        let dims = vec![Some(2), Some(2)];
+        let x = graph.input("x", ElementType::Float, dims.clone(), &[]);
+        let weights = constant(vec![2, 2], &[1.0, 0.0, 0.0, 1.0]);
+        let other = constant(vec![rows, 2], &[10.0, -10.0, 20.0, -20.0][..2 * rows]);
+        let gemm = Operator::new("Gemm").float("alpha", alpha);
+        let gemm =
+            graph.add("gemm", gemm, &[&x, &weights, &other], ElementType::Float, dims.clone()).unwrap();
+        let relu = graph.add("relu", Operator::new("Relu"), &[&gemm], ElementType::Float, dims).unwrap();
+        graph.output("y", &relu, "", &[]).unwrap();
+        let bytes = bytes_from_model(&model_from_graph(graph.finish("gemm")));
+        let mut executor = Executor::open(&bytes, Compute::single()).unwrap();
+        let second = if rows == 1 { 10.0 } else { 20.0 };
+        let wanted = [10.0 - alpha, 0.0, 2.0 * alpha + second, 0.0];
+        assert_eq!(outputs(&mut executor, &[2, 2], &[-1.0, 4.0, 2.0, 6.0]), [wanted], "{alpha} {rows}");
+    }
+}
+
+#[test]
+fn the_largest_of_many_are_those_of_a_sort() {
+    let mut random = opendr_engine::Random::new(5);
+    for (length, k, largest) in [(10_000, 7, 1), (10_000, 100, 0), (300, 300, 1), (129, 64, 0), (5, 2, 1)] {
+        let mut graph = Builder::default();
+        let x = graph.input("x", ElementType::Float, vec![Some(2), Some(length)], &[]);
+        let operator = Operator::new("TopK").int("largest", largest).int("axis", 1);
+        let count = opendr_onnx::Array::new(vec![1], opendr_onnx::Data::Int(vec![k as i64])).unwrap();
+        let count = GraphTensor::constant(count);
+        let shape = vec![Some(2), Some(k)];
+        let kinds = vec![(ElementType::Float, shape.clone()), (ElementType::Int, shape)];
+        let results = graph.add_many("top", operator, &[&x, &count], kinds).unwrap();
+        graph.output("values", &results[0], "", &[]).unwrap();
+        graph.output("positions", &results[1], "", &[]).unwrap();
+        let bytes = bytes_from_model(&model_from_graph(graph.finish("top")));
+        let mut executor = Executor::open(&bytes, Compute::single()).unwrap();
+        // Many equal values, zeros of both signs, infinities.
+        let mut x: Vec<f32> = (0..2 * length).map(|_| (random.uniform(-40.0, 40.0) as f32).round()).collect();
+        (x[1], x[3], x[4]) = (-0.0, f32::INFINITY, f32::NEG_INFINITY);
+        let got = outputs(&mut executor, &[2, length], &x);
+        for (row, x) in x.chunks(length).enumerate() {
+            let mut order: Vec<usize> = (0..length).collect();
+            order.sort_by(|&a, &b| if largest == 1 { x[b].total_cmp(&x[a]) } else { x[a].total_cmp(&x[b]) });
+            let wanted: Vec<f32> = order[..k].iter().map(|&i| i as f32).collect();
+            assert_eq!(got[1][row * k..][..k], wanted, "{length} {k} {largest}");
+            let values: Vec<f32> = order[..k].iter().map(|&i| x[i]).collect();
+            assert_eq!(got[0][row * k..][..k], values);
+        }
+    }
+}
+
+#[test]
+fn a_short_row_is_added_to_all_rows() {
+    for (length, rows) in [(1, 700), (3, 7000), (20, 3), (63, 300), (65, 300)] {
+        for is_first in [false, true] {
+            let mut graph = Builder::default();
+            let dims = vec![Some(rows), Some(length)];
+            let x = graph.input("x", ElementType::Float, dims.clone(), &[]);
+            let row: Vec<f32> = (0..length).map(|i| i as f32).collect();
+            let row = constant(vec![1, length], &row);
+            let inputs = if is_first { [&row, &x] } else { [&x, &row] };
+            let y = graph.add("y", Operator::new("Sub"), &inputs, ElementType::Float, dims).unwrap();
+            graph.output("y", &y, "", &[]).unwrap();
+            let bytes = bytes_from_model(&model_from_graph(graph.finish("rows")));
+            let mut executor = Executor::open(&bytes, Compute::single()).unwrap();
+            let x: Vec<f32> = (0..rows * length).map(|i| i as f32).collect();
+            let got = outputs(&mut executor, &[rows, length], &x);
+            let sign = if is_first { -1.0 } else { 1.0 };
+            let wanted: Vec<f32> = (0..rows * length).map(|i| sign * (i - i % length) as f32).collect();
+            assert_eq!(got, [wanted], "{length} {rows}");
+        }
+    }
+}

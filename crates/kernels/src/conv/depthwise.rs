@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::geometry::{Finish, Strides, Window};
-use crate::aligned::AlignedBuffer;
+use crate::aligned::{AlignedBuffer, flush_negligible};
 use crate::compute::Compute;
 use crate::cost::LayerCost;
 use crate::isa::{Isa, for_every_isa};
@@ -25,7 +25,7 @@ pub struct DepthwiseFilters {
 const PIXELS: usize = 6;
 
 impl DepthwiseFilters {
-    /// Packs weights of the shape `[channels, 1, height, width]`.
+    /// Packs weights of the shape `[channels, 1, height, width]`. Weights below 1e-20 of the largest one count as zero.
     ///
     /// # Panics
     /// When the lengths do not match.
@@ -40,6 +40,7 @@ impl DepthwiseFilters {
                 all[tap * padded + channel] = weight;
             }
         }
+        flush_negligible(&mut all[..taps * padded]);
         if let Some(bias) = bias {
             assert_eq!(bias.len(), channels, "one bias per channel");
             all[taps * padded..][..channels].copy_from_slice(bias);
@@ -198,89 +199,116 @@ unsafe fn rows_of_piece<V: Lanes>(job: &Job<'_>, piece: usize) {
     }
 }
 
-struct Taps {
+/// What all pixels of a row of the output share.
+struct Row<'a> {
+    job: &'a Job<'a>,
+    /// The first row of taps that lies within the input, of the image's first pixel.
     x: *const f32,
-    weights: *const f32,
-    first: usize,
-    end: usize,
-    input_row: isize,
+    /// Distance between rows of taps.
+    x_row: usize,
+    /// The row of the output.
+    y: *mut f32,
+    /// Rows of taps that lie within the input.
+    taps: [usize; 2],
+    slopes: *const f32,
 }
 
 /// Computes a row of the output; `K` and `S` are kernel width and stride, or 0 where there is no loop for them.
 #[inline(always)]
 unsafe fn row<V: Lanes, const K: usize, const S: usize>(job: &Job<'_>, image: usize, oy: usize) {
-    let (window, filters) = (job.window, job.filters);
+    let window = job.window;
     let input_row = (oy * window.strides[0]) as isize - window.pads[0] as isize;
-    let inside = |ky: usize| {
-        let y = input_row + (ky * window.dilations[0]) as isize;
-        y >= 0 && y < window.input[0] as isize
-    };
-    let first = (0..window.kernel[0]).find(|&ky| inside(ky)).unwrap_or(0);
-    let end = (0..window.kernel[0]).rev().find(|&ky| inside(ky)).map_or(first, |ky| ky + 1);
+    let input_row = |ky: usize| input_row + (ky * window.dilations[0]) as isize;
+    let inside = |ky: &usize| (0..window.input[0] as isize).contains(&input_row(*ky));
+    let first = (0..window.kernel[0]).find(inside).unwrap_or(0);
+    let end = (0..window.kernel[0]).rev().find(inside).map_or(first, |ky| ky + 1);
     let width = window.output[1];
     // Output pixels all of whose taps lie within the row.
-    let (left, right) = if K == 0 {
-        (width, width)
+    let [left, right] = if K == 0 {
+        [width, width]
     } else {
         let left = window.pads[1].div_ceil(S).min(width);
         let right =
             (window.input[1] + window.pads[1]).checked_sub(K).map_or(0, |last| last / S + 1).min(width);
-        (left, right.max(left))
+        [left, right.max(left)]
     };
-    // SAFETY: channels and pixels lie within the tensors, whose sizes have been checked.
+    // SAFETY: channels and pixels lie within the tensors, whose sizes have been checked; without taps nothing is read.
     unsafe {
-        for channel in (0..filters.channels).step_by(V::WIDTH) {
-            let count = (filters.channels - channel).min(V::WIDTH);
-            let taps = Taps {
-                x: job.x.add(image * job.x_strides.image + channel),
-                weights: filters.rows.start().add(channel),
-                first,
-                end,
-                input_row,
+        let x = image * job.x_strides.image + input_row(first).max(0) as usize * job.x_strides.row;
+        let row = Row {
+            job,
+            x: job.x.wrapping_add(x),
+            x_row: window.dilations[0] * job.x_strides.row,
+            y: job.y.add(image * job.y_strides.image + oy * job.y_strides.row),
+            taps: [first, end],
+            slopes: job.finish.slopes.as_ref().map_or(std::ptr::null(), |slopes| slopes.as_ptr()),
+        };
+        let mut ox = 0;
+        while ox < width {
+            // All channels of a few pixels, which lie side by side: memory is read and written in its order.
+            let pixels = match right.saturating_sub(ox) {
+                _ if ox < left || ox >= right => 0,
+                PIXELS.. => PIXELS,
+                4..PIXELS => 4,
+                2..4 => 2,
+                _ => 1,
             };
-            let mut ox = 0;
-            while ox < width {
-                if ox >= left && ox + PIXELS <= right {
-                    let sums = inner::<V, K, S>(job, &taps, ox, count);
-                    finish(job, image, oy, ox, channel, &sums, count);
-                    ox += PIXELS;
-                } else {
-                    let sum = edge::<V>(job, &taps, ox, count);
-                    finish(job, image, oy, ox, channel, &[sum], count);
-                    ox += 1;
-                }
+            match pixels {
+                0 => edge::<V>(&row, ox),
+                PIXELS => inner::<V, K, S, PIXELS>(&row, ox),
+                4 => inner::<V, K, S, 4>(&row, ox),
+                2 => inner::<V, K, S, 2>(&row, ox),
+                _ => inner::<V, K, S, 1>(&row, ox),
             }
+            ox += pixels.max(1);
         }
     }
 }
 
 #[inline(always)]
-unsafe fn load<V: Lanes>(from: *const f32, count: usize) -> V {
+unsafe fn load<V: Lanes, const WHOLE: bool>(from: *const f32, count: usize) -> V {
     // SAFETY: passed on.
-    unsafe { if count == V::WIDTH { V::load(from) } else { V::load_some(from, count) } }
+    unsafe { if WHOLE { V::load(from) } else { V::load_some(from, count) } }
 }
 
+/// Computes pixels all of whose taps lie within their rows of the input.
 #[inline(always)]
-unsafe fn inner<V: Lanes, const K: usize, const S: usize>(
-    job: &Job<'_>,
-    taps: &Taps,
-    ox: usize,
-    count: usize,
-) -> [V; PIXELS] {
-    let padded = job.filters.padded;
-    // SAFETY: passed on; all taps lie within the input.
+unsafe fn inner<V: Lanes, const K: usize, const S: usize, const R: usize>(row: &Row<'_>, ox: usize) {
+    let channels = row.job.filters.channels;
+    let whole = channels / V::WIDTH * V::WIDTH;
+    // SAFETY: passed on.
     unsafe {
-        let mut sums = [V::splat(0.0); PIXELS];
-        let left = ox * S - job.window.pads[1];
-        for ky in taps.first..taps.end {
-            let y = (taps.input_row + (ky * job.window.dilations[0]) as isize) as usize;
-            let line = taps.x.add(y * job.x_strides.row + left * job.x_strides.pixel);
-            let weights = taps.weights.add(ky * K * padded);
+        let x = row.x.wrapping_add((ox * S - row.job.window.pads[1]) * row.job.x_strides.pixel);
+        for channel in (0..whole).step_by(V::WIDTH) {
+            tile::<V, K, S, R, true>(row, x, ox, channel, V::WIDTH);
+        }
+        if whole < channels {
+            tile::<V, K, S, R, false>(row, x, ox, whole, channels - whole);
+        }
+    }
+}
+
+/// Computes `count` channels of pixels whose taps begin at `x`.
+#[inline(always)]
+unsafe fn tile<V: Lanes, const K: usize, const S: usize, const R: usize, const WHOLE: bool>(
+    row: &Row<'_>,
+    x: *const f32,
+    ox: usize,
+    channel: usize,
+    count: usize,
+) {
+    let (padded, pixel) = (row.job.filters.padded, row.job.x_strides.pixel);
+    // SAFETY: passed on.
+    unsafe {
+        let mut sums = [V::splat(0.0); R];
+        let mut line = x.wrapping_add(channel);
+        let mut weights = row.job.filters.rows.start().add(row.taps[0] * K * padded + channel);
+        for _ in row.taps[0]..row.taps[1] {
             if S == 1 {
                 // Pixels are loaded once for all taps of the row.
                 let mut pixels = [V::splat(0.0); 10];
-                for (i, pixel) in pixels.iter_mut().enumerate().take(PIXELS - 1 + K) {
-                    *pixel = load(line.add(i * job.x_strides.pixel), count);
+                for (i, value) in pixels.iter_mut().enumerate().take(R - 1 + K) {
+                    *value = load::<V, WHOLE>(line.add(i * pixel), count);
                 }
                 for kx in 0..K {
                     let weight = V::load(weights.add(kx * padded));
@@ -292,68 +320,75 @@ unsafe fn inner<V: Lanes, const K: usize, const S: usize>(
                 for kx in 0..K {
                     let weight = V::load(weights.add(kx * padded));
                     for (i, sum) in sums.iter_mut().enumerate() {
-                        let pixel: V = load(line.add((i * S + kx) * job.x_strides.pixel), count);
-                        *sum = pixel.mul_add(weight, *sum);
+                        let value: V = load::<V, WHOLE>(line.add((i * S + kx) * pixel), count);
+                        *sum = value.mul_add(weight, *sum);
                     }
                 }
             }
+            line = line.wrapping_add(row.x_row);
+            weights = weights.wrapping_add(K * padded);
         }
-        sums
+        finish::<V, R, WHOLE>(row, ox, channel, count, &sums);
     }
 }
 
 /// Computes one output pixel, some of whose taps may lie beside the input.
 #[inline(always)]
-unsafe fn edge<V: Lanes>(job: &Job<'_>, taps: &Taps, ox: usize, count: usize) -> V {
-    let (window, padded) = (job.window, job.filters.padded);
+unsafe fn edge<V: Lanes>(row: &Row<'_>, ox: usize) {
+    let (window, filters) = (row.job.window, row.job.filters);
+    let dilation = window.dilations[1];
+    let x = (ox * window.strides[1]) as isize - window.pads[1] as isize;
+    // Taps from the first one within the input to the first one behind it.
+    let first = if x < 0 { x.unsigned_abs().div_ceil(dilation) } else { 0 };
+    let behind = (window.input[1] as isize - x).max(0) as usize;
+    let end = behind.div_ceil(dilation).min(window.kernel[1]).max(first);
+    let left = (x + (first * dilation) as isize).max(0) as usize * row.job.x_strides.pixel;
+    let step = dilation * row.job.x_strides.pixel;
     // SAFETY: passed on; taps beside the input are left out.
     unsafe {
-        let mut sum = V::splat(0.0);
-        for ky in taps.first..taps.end {
-            let y = (taps.input_row + (ky * window.dilations[0]) as isize) as usize;
-            for kx in 0..window.kernel[1] {
-                let x =
-                    (ox * window.strides[1] + kx * window.dilations[1]) as isize - window.pads[1] as isize;
-                if x >= 0 && x < window.input[1] as isize {
-                    let at = taps.x.add(y * job.x_strides.row + x as usize * job.x_strides.pixel);
-                    let weight = V::load(taps.weights.add((ky * window.kernel[1] + kx) * padded));
-                    let pixel: V = load(at, count);
-                    sum = pixel.mul_add(weight, sum);
+        for channel in (0..filters.channels).step_by(V::WIDTH) {
+            let count = (filters.channels - channel).min(V::WIDTH);
+            let mut sum = V::splat(0.0);
+            for ky in row.taps[0]..row.taps[1] {
+                let line = row.x.wrapping_add((ky - row.taps[0]) * row.x_row + left + channel);
+                let weights =
+                    filters.rows.start().add((ky * window.kernel[1] + first) * filters.padded + channel);
+                for kx in 0..end - first {
+                    let value: V = load::<V, false>(line.wrapping_add(kx * step), count);
+                    sum = value.mul_add(V::load(weights.wrapping_add(kx * filters.padded)), sum);
                 }
             }
+            finish::<V, 1, false>(row, ox, channel, count, &[sum]);
         }
-        sum
     }
 }
 
 /// Adds the bias, last for the reason given in the tiles of dense convolutions, applies the activation function and stores.
 #[inline(always)]
-unsafe fn finish<V: Lanes, const R: usize>(
-    job: &Job<'_>,
-    image: usize,
-    oy: usize,
+unsafe fn finish<V: Lanes, const R: usize, const WHOLE: bool>(
+    row: &Row<'_>,
     ox: usize,
     channel: usize,
-    sums: &[V; R],
     count: usize,
+    sums: &[V; R],
 ) {
+    let job = row.job;
     // SAFETY: passed on.
     unsafe {
-        let y = job
-            .y
-            .add(image * job.y_strides.image + oy * job.y_strides.row + ox * job.y_strides.pixel + channel);
-        let zero = V::splat(0.0);
+        let y = row.y.add(ox * job.y_strides.pixel + channel);
         let taps = job.window.kernel[0] * job.window.kernel[1];
         let bias = V::load(job.filters.rows.start().add(taps * job.filters.padded + channel));
-        let slope = job.finish.slopes.as_ref().map(|slopes| V::load(slopes.as_ptr().add(channel)));
+        let [low, high] = job.clamp.map(|bound| V::splat(bound));
         for (i, &sum) in sums.iter().enumerate() {
-            let sum = sum.add(bias);
-            let value = match slope {
-                Some(slope) => slope.mul_add(zero.min(sum), zero.max(sum)),
-                None => V::splat(job.clamp[1]).min(V::splat(job.clamp[0]).max(sum)),
-            };
+            let mut value = sum.add(bias);
+            if row.slopes.is_null() {
+                value = high.min(low.max(value));
+            } else {
+                let zero = V::splat(0.0);
+                value = V::load(row.slopes.add(channel)).mul_add(zero.min(value), zero.max(value));
+            }
             let to = y.add(i * job.y_strides.pixel);
-            if count == V::WIDTH { value.store(to) } else { value.store_some(to, count) }
+            if WHOLE { value.store(to) } else { value.store_some(to, count) }
         }
     }
 }

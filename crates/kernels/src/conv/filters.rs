@@ -1,6 +1,6 @@
 //! Weights in the order in which the inner loop reads them.
 
-use crate::aligned::AlignedBuffer;
+use crate::aligned::{AlignedBuffer, flush_negligible};
 use crate::compute::Compute;
 use crate::isa::{Isa, Set};
 use crate::lanes::{self, Lanes};
@@ -33,7 +33,7 @@ impl std::fmt::Debug for Filters {
 
 impl Filters {
     /// Packs weights of the shape `[groups * outputs, channels, height, width]`. `planar` states that the input has
-    /// planes of channels, which is faster for few channels.
+    /// planes of channels, which is faster for few channels. Weights below 1e-20 of the largest one count as zero.
     ///
     /// # Panics
     /// When the lengths do not match.
@@ -111,6 +111,7 @@ impl Filters {
                 }
             }
         }
+        flush_negligible(packed);
         let padded = blocks * width;
         let mut padded_bias = vec![0.0; padded * groups];
         if let Some(bias) = bias {
