@@ -190,9 +190,14 @@ unsafe fn rows_of_piece<V: Lanes>(job: &Job<'_>, piece: usize) {
             }
             if job.then != Unary::Identity {
                 let y = job.y.add(image * job.y_strides.image + oy * job.y_strides.row);
-                for ox in 0..window.output[1] {
-                    let y = y.add(ox * job.y_strides.pixel);
-                    unary_all::<V>(job.then, y, y, job.filters.channels);
+                let (pixels, channels) = (window.output[1], job.filters.channels);
+                if job.y_strides.pixel == channels {
+                    unary_all::<V>(job.then, y, y, pixels * channels);
+                } else {
+                    for ox in 0..pixels {
+                        let y = y.add(ox * job.y_strides.pixel);
+                        unary_all::<V>(job.then, y, y, channels);
+                    }
                 }
             }
         }

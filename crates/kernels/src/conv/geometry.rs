@@ -28,6 +28,11 @@ impl Window {
     pub fn is_pointwise(&self) -> bool {
         self.kernel == [1, 1] && self.strides == [1, 1] && self.pads == [0, 0] && self.input == self.output
     }
+
+    /// Returns whether each output pixel depends on input pixels of its column only, and the next row on those one row below.
+    pub fn is_columnwise(&self) -> bool {
+        self.kernel[1] == 1 && self.strides == [1, 1] && self.pads[1] == 0 && self.input[1] == self.output[1]
+    }
 }
 
 /// Where the numbers of a tensor lie: the strides of images, rows, pixels and channels.

@@ -85,10 +85,19 @@ fn run(conv: &Convolution, compute: &Compute, x: &[f32], residual: Option<&[f32]
     let rows_join = conv.y.row == width * conv.y.pixel
         && conv.x.row == width * conv.x.pixel
         && (residual.is_none() || conv.residual.row == width * conv.residual.pixel);
-    if window.is_pointwise() && rows_join && height > 1 {
-        // One long row: no tile ends at the end of a row.
+    let in_order = window.kernel[0] == 1 || !conv.filters.is_planar();
+    if window.is_columnwise() && in_order && rows_join && height > 1 {
+        // One long row, whose taps are as far apart as rows: no tile ends at the end of a row.
+        let [input, _] = window.input;
         flat = conv.clone();
-        flat.window = Window { input: [1, height * width], output: [1, height * width], ..window };
+        flat.window = Window {
+            kernel: [1, window.kernel[0]],
+            dilations: [1, window.dilations[0] * width],
+            pads: [0, window.pads[0] * width],
+            input: [1, input * width],
+            output: [1, height * width],
+            ..window
+        };
         conv = &flat;
     }
     let zeros: Vec<f32> = if conv.filters.group_channels() > ZEROS {

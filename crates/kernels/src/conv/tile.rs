@@ -2,7 +2,7 @@
 
 use super::filters::Panel;
 use super::geometry::Convolution;
-use crate::lanes::{Lanes, MAX_WIDTH};
+use crate::lanes::Lanes;
 use crate::unary::Unary;
 
 /// Rows of a tile with one, two and three registers across: the sums use most registers.
@@ -14,9 +14,6 @@ pub(super) const fn most_pixels<V: Lanes>(vectors: usize) -> usize {
         _ => 8,
     }
 }
-
-/// Numbers of the largest tile.
-const MAX_TILE: usize = 24 * MAX_WIDTH;
 
 /// What all tiles of a row of output pixels share.
 pub(super) struct Row<'a> {
@@ -185,7 +182,7 @@ unsafe fn add_step<V: Lanes, const R: usize, const N: usize>(
 #[inline(always)]
 unsafe fn store<V: Lanes, const R: usize, const N: usize>(row: &Row, first: usize, sums: &[[V; N]; R]) {
     let stride = row.conv.y.pixel;
-    // SAFETY: pixels and outputs lie within the output; an incomplete panel is copied from a buffer.
+    // SAFETY: pixels and outputs lie within the output; registers of an incomplete panel are counted.
     unsafe {
         let y = row.y.add(first * stride);
         let (low, high) = (V::splat(row.clamp[0]), V::splat(row.clamp[1]));
@@ -201,14 +198,14 @@ unsafe fn store<V: Lanes, const R: usize, const N: usize>(row: &Row, first: usiz
             }
             return;
         }
-        let mut buffer = [0.0_f32; MAX_TILE];
         for (i, sums) in sums.iter().enumerate() {
-            for (j, &sum) in sums.iter().enumerate() {
-                high.min(low.max(sum.add(bias[j]))).store(buffer.as_mut_ptr().add((i * N + j) * V::WIDTH));
+            for (&sum, (bias, at)) in
+                sums.iter().zip(bias.into_iter().zip((0..row.panel.used).step_by(V::WIDTH)))
+            {
+                let value = high.min(low.max(sum.add(bias)));
+                let (to, count) = (y.add(i * stride + at), row.panel.used - at);
+                if count >= V::WIDTH { value.store(to) } else { value.store_some(to, count) }
             }
-        }
-        for (i, sums) in buffer.chunks_exact(N * V::WIDTH).take(R).enumerate() {
-            y.add(i * stride).copy_from_nonoverlapping(sums.as_ptr(), row.panel.used);
         }
     }
 }
@@ -223,12 +220,17 @@ pub(super) unsafe fn finish<V: Lanes>(row: &Row, [first, end]: [usize; 2]) {
     let used = row.panel.used.min(row.panel.vectors * V::WIDTH);
     let activation = if row.is_clamped { Unary::Identity } else { conv.finish.activation };
     let zero = |from: *const f32| from.is_null();
+    // Where the panel has all channels, pixels are one run: few channels would leave registers empty.
+    let is_run =
+        zero(row.slopes) && used == conv.y.pixel && (zero(row.residual) || conv.residual.pixel == used);
+    let pixels = if is_run { first..first + 1 } else { first..end };
+    let length = if is_run { (end - first) * used } else { used };
     // SAFETY: by contract; partial registers are counted.
     unsafe {
-        for pixel in first..end {
+        for pixel in pixels {
             let y = row.y.add(pixel * conv.y.pixel);
-            for j in (0..used).step_by(V::WIDTH) {
-                let count = (used - j).min(V::WIDTH);
+            for j in (0..length).step_by(V::WIDTH) {
+                let count = (length - j).min(V::WIDTH);
                 let load = |from: *const f32| {
                     if count == V::WIDTH { V::load(from) } else { V::load_some(from, count) }
                 };
