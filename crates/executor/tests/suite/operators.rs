@@ -175,7 +175,7 @@ fn the_largest_of_many_are_those_of_a_sort() {
         let bytes = bytes_from_model(&model_from_graph(graph.finish("top")));
         let mut executor = Executor::open(&bytes, Compute::single()).unwrap();
         // Many equal values, zeros of both signs, infinities.
-        let mut x: Vec<f32> = (0..2 * length).map(|_| (random.uniform(-40.0, 40.0) as f32).round()).collect();
+        let mut x: Vec<f32> = (0..2 * length).map(|_| random.uniform(-40.0, 40.0).round()).collect();
         (x[1], x[3], x[4]) = (-0.0, f32::INFINITY, f32::NEG_INFINITY);
         let got = outputs(&mut executor, &[2, length], &x);
         for (row, x) in x.chunks(length).enumerate() {
