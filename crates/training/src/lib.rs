@@ -24,6 +24,8 @@ pub mod export;
 mod fit_learner;
 pub mod fuzzing;
 mod gradients;
+#[doc(hidden)]
+pub mod instances;
 mod kept_heap;
 pub mod layers;
 mod memory;
