@@ -6,6 +6,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 
 import numpy as np
 import opendr
@@ -177,6 +178,32 @@ def test_the_command_runs_on_a_cluster(tmp_path):
     assert here == there
     model = ["--model", tmp_path / "here" / "model"]
     assert without_times({"report": command("eval", *model)}) == without_times({"report": command("eval", *model, "--ray", "local")})
+
+
+def test_ctrl_c_stops_a_training_on_a_cluster_which_resumes(tmp_path):
+    for index in range(12):
+        folder = tmp_path / "shades" / Shades.classes[index % 2]
+        folder.mkdir(parents=True, exist_ok=True)
+        Shades()[index][0].save(folder / f"{index}.png")
+    out = tmp_path / "out"
+    fit = ["fit", "image_classifier", tmp_path / "shades", "--batch-size", "2", "--accumulate", "2", "--out", out]
+    fit = [sys.executable, "-m", "opendr", *map(str, fit), "--ray", "local", "--threads", "1", "--checkpoint-after-iter", "1"]
+    running = subprocess.Popen([*fit, "--epochs", "100000"], start_new_session=True, stderr=subprocess.PIPE, text=True)
+    try:
+        deadline = time.monotonic() + 120
+        while not any(out.glob("checkpoints/*/training_state.json")):
+            assert running.poll() is None and time.monotonic() < deadline, running.stderr.read()
+            time.sleep(0.1)
+        # A terminal sends the signal to the whole group.
+        os.killpg(running.pid, signal.SIGINT)
+        _, errors = running.communicate(timeout=60)
+    finally:
+        running.kill()
+    assert "stopped at step" in errors and "Traceback" not in errors, errors
+    assert (out / "model" / "model.onnx").exists()
+    steps = max(json.loads(path.read_text())["step"] for path in out.glob("checkpoints/*/training_state.json"))
+    more = subprocess.run([*fit, "--epochs", str(steps // 3 + 2), "--resume"], capture_output=True, text=True, timeout=300)
+    assert more.returncode == 0 and f"resumed at step {steps}" in more.stderr, more.stderr
 
 
 @pytest.mark.filterwarnings("ignore")
