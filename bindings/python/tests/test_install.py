@@ -134,7 +134,7 @@ def test_nothing_comes_with_it_but_numpy(environment):
 def test_import_costs_little(environment):
     runs = [json.loads(environment.run("python", "-c", IMPORT)) for _ in range(5)]
     print(f"import opendr: {min(run['ms'] for run in runs):.1f} ms, {min(run['mb'] for run in runs):.1f} MB")
-    assert min(run["ms"] for run in runs) <= 50
+    assert min(run["ms"] for run in runs) <= 15
     assert min(run["mb"] for run in runs) <= 25
     assert not any(run["numpy"] for run in runs)
 

@@ -13,10 +13,11 @@ Modules and classes are those of OpenDR: ``opendr.engine.data``, ``opendr.engine
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
 
 from opendr._upstream import Finder
 
+# True for type checkers. The module `typing` takes ten times as long to import as the rest.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from opendr._errors import (
         DeviceError,

@@ -7,10 +7,11 @@ order, and the tables of docs/python.md.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Optional
-
+# True for type checkers. The module `typing` takes ten times as long to import as the rest.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from importlib.machinery import ModuleSpec
+    from typing import Any, Optional
 
 
 class Finder:
