@@ -222,11 +222,9 @@ struct Row<'a> {
 #[inline(always)]
 unsafe fn row<V: Lanes, const K: usize, const S: usize>(job: &Job<'_>, image: usize, oy: usize) {
     let window = job.window;
-    let input_row = (oy * window.strides[0]) as isize - window.pads[0] as isize;
-    let input_row = |ky: usize| input_row + (ky * window.dilations[0]) as isize;
-    let inside = |ky: &usize| (0..window.input[0] as isize).contains(&input_row(*ky));
-    let first = (0..window.kernel[0]).find(inside).unwrap_or(0);
-    let end = (0..window.kernel[0]).rev().find(inside).map_or(first, |ky| ky + 1);
+    let input_row = window.first_tap(0, oy);
+    let taps = window.taps_inside(0, input_row);
+    let first_row = input_row + (taps[0] * window.dilations[0]) as isize;
     let width = window.output[1];
     // Output pixels all of whose taps lie within the row.
     let [left, right] = if K == 0 {
@@ -239,13 +237,13 @@ unsafe fn row<V: Lanes, const K: usize, const S: usize>(job: &Job<'_>, image: us
     };
     // SAFETY: channels and pixels lie within the tensors, whose sizes have been checked; without taps nothing is read.
     unsafe {
-        let x = image * job.x_strides.image + input_row(first).max(0) as usize * job.x_strides.row;
+        let x = image * job.x_strides.image + first_row.max(0) as usize * job.x_strides.row;
         let row = Row {
             job,
             x: job.x.wrapping_add(x),
             x_row: window.dilations[0] * job.x_strides.row,
             y: job.y.add(image * job.y_strides.image + oy * job.y_strides.row),
-            taps: [first, end],
+            taps,
             slopes: job.finish.slopes.as_ref().map_or(std::ptr::null(), |slopes| slopes.as_ptr()),
         };
         let mut ox = 0;
@@ -342,11 +340,8 @@ unsafe fn tile<V: Lanes, const K: usize, const S: usize, const R: usize, const W
 unsafe fn edge<V: Lanes>(row: &Row<'_>, ox: usize) {
     let (window, filters) = (row.job.window, row.job.filters);
     let dilation = window.dilations[1];
-    let x = (ox * window.strides[1]) as isize - window.pads[1] as isize;
-    // Taps from the first one within the input to the first one behind it.
-    let first = if x < 0 { x.unsigned_abs().div_ceil(dilation) } else { 0 };
-    let behind = (window.input[1] as isize - x).max(0) as usize;
-    let end = behind.div_ceil(dilation).min(window.kernel[1]).max(first);
+    let x = window.first_tap(1, ox);
+    let [first, end] = window.taps_inside(1, x);
     let left = (x + (first * dilation) as isize).max(0) as usize * row.job.x_strides.pixel;
     let step = dilation * row.job.x_strides.pixel;
     // SAFETY: passed on; taps beside the input are left out.

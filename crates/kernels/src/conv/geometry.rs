@@ -29,6 +29,19 @@ impl Window {
         self.kernel == [1, 1] && self.strides == [1, 1] && self.pads == [0, 0] && self.input == self.output
     }
 
+    /// Returns the input index below the first tap of an output index along an axis, which may be negative.
+    pub(super) fn first_tap(&self, axis: usize, output: usize) -> isize {
+        (output * self.strides[axis]) as isize - self.pads[axis] as isize
+    }
+
+    /// Returns the first tap along an axis that lies within the input, and the one behind the last, where the first of all lies at `at`.
+    pub(super) fn taps_inside(&self, axis: usize, at: isize) -> [usize; 2] {
+        let (kernel, dilation) = (self.kernel[axis], self.dilations[axis]);
+        let before = |index: isize| (index.max(0) as usize).div_ceil(dilation).min(kernel);
+        let first = before(-at);
+        [first, before(self.input[axis] as isize - at).max(first)]
+    }
+
     /// Returns whether each output pixel depends on input pixels of its column only, and the next row on those one row below.
     pub fn is_columnwise(&self) -> bool {
         self.kernel[1] == 1 && self.strides == [1, 1] && self.pads[1] == 0 && self.input[1] == self.output[1]

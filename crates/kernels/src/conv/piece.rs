@@ -180,13 +180,8 @@ unsafe fn piece_in_tiles<V: Lanes>(job: &Job<'_>, piece: usize) {
     for panel in share * job.panels..last_panel {
         let panel = filters.panel(group, panel);
         for oy in first_row..last_row {
-            let input_row = (oy * window.strides[0]) as isize - window.pads[0] as isize;
-            let inside = |ky: usize| {
-                let y = input_row + (ky * window.dilations[0]) as isize;
-                y >= 0 && y < window.input[0] as isize
-            };
-            let first = (0..window.kernel[0]).find(|&ky| inside(ky)).unwrap_or(0);
-            let end = (0..window.kernel[0]).rev().find(|&ky| inside(ky)).map_or(first, |ky| ky + 1);
+            let input_row = window.first_tap(0, oy);
+            let taps = window.taps_inside(0, input_row);
             // SAFETY: the sizes have been checked.
             unsafe {
                 let residual = if job.residual.is_null() {
@@ -207,7 +202,7 @@ unsafe fn piece_in_tiles<V: Lanes>(job: &Job<'_>, piece: usize) {
                     slopes,
                     panel,
                     input_row,
-                    taps: [first, end],
+                    taps,
                     clamp,
                     is_clamped,
                     zeros: job.zeros,
