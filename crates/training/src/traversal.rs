@@ -112,12 +112,6 @@ pub trait Change {
     fn float(&mut self, param: &dyn FloatParam) -> Option<Tensor<1>>;
 }
 
-impl<F: FnMut(&dyn FloatParam) -> Option<Tensor<1>>> Change for F {
-    fn float(&mut self, param: &dyn FloatParam) -> Option<Tensor<1>> {
-        self(param)
-    }
-}
-
 /// A module whose type is not known.
 pub trait AnyModule {
     /// Visits the parameters.
