@@ -159,14 +159,20 @@ def test_processes_of_a_cluster_train_the_weights_of_one(cluster, tmp_path):
     assert weights == same and again["loss"] == here["loss"]
 
 
-def test_the_command_runs_on_a_cluster(tmp_path):
+def folder_of_shades(tmp_path):
+    """Writes twelve images in a folder for each class."""
     for index in range(12):
         folder = tmp_path / "shades" / Shades.classes[index % 2]
         folder.mkdir(parents=True, exist_ok=True)
         Shades()[index][0].save(folder / f"{index}.png")
+    return tmp_path / "shades"
+
+
+def test_the_command_runs_on_a_cluster(tmp_path):
+    dataset = folder_of_shades(tmp_path)
 
     def command(*words):
-        words = [words[0], "image_classifier", str(tmp_path / "shades"), *map(str, words[1:]), "--quiet", "--json"]
+        words = [words[0], "image_classifier", str(dataset), *map(str, words[1:]), "--quiet", "--json"]
         done = subprocess.run([sys.executable, "-m", "opendr", *words], capture_output=True, text=True, timeout=300)
         assert done.returncode == 0, done.stderr
         return json.loads(done.stdout)
@@ -181,12 +187,9 @@ def test_the_command_runs_on_a_cluster(tmp_path):
 
 
 def test_ctrl_c_stops_a_training_on_a_cluster_which_resumes(tmp_path):
-    for index in range(12):
-        folder = tmp_path / "shades" / Shades.classes[index % 2]
-        folder.mkdir(parents=True, exist_ok=True)
-        Shades()[index][0].save(folder / f"{index}.png")
+    dataset = folder_of_shades(tmp_path)
     out = tmp_path / "out"
-    fit = ["fit", "image_classifier", tmp_path / "shades", "--batch-size", "2", "--accumulate", "2", "--out", out]
+    fit = ["fit", "image_classifier", dataset, "--batch-size", "2", "--accumulate", "2", "--out", out]
     fit = [sys.executable, "-m", "opendr", *map(str, fit), "--ray", "local", "--threads", "1", "--checkpoint-after-iter", "1"]
     running = subprocess.Popen([*fit, "--epochs", "100000"], start_new_session=True, stderr=subprocess.PIPE, text=True)
     try:
