@@ -3,7 +3,8 @@ predictions of the packages' own post-processing on one image.
 
     python tests/extended/exported_network_fixtures.py crates/perception [PACKAGE...]
 
-It needs torch, torchvision, ultralytics, transformers, YOLOX from its repository, onnx and onnxruntime, and downloads nothing. Each
+It needs torch, torchvision, ultralytics, transformers, rtmlib, MMPose's wheel (unpacked, on PYTHONPATH), YOLOX from its repository, onnx and
+onnxruntime, and downloads nothing. Each
 fixture is a container NAME.zip and the predictions NAME.json in tests/imported of detection, pose, classification, segmentation and depth; that of YOLOX is the
 model of the test data (OPENDR_TEST_DATA). The packages' code is run, not copied; no weights of theirs are involved.
 """
@@ -511,12 +512,114 @@ def depth_estimators(folder):
     write_depths(folder, "yolo_depth", onnx, depths[0, 0], metric, None)
 
 
+def mmpose_codecs():
+    """MMPose's functions that decode outputs, without mmcv, which the rest of the package needs."""
+    import importlib.util
+
+    [path] = [Path(entry) / "mmpose/codecs/utils" for entry in sys.path if (Path(entry) / "mmpose/codecs/utils").is_dir()]
+    spec = importlib.util.spec_from_file_location("codecs_utils", path / "__init__.py", submodule_search_locations=[str(path)])
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["codecs_utils"] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def write_top_down(root, name, onnx, size, boxes, poses, **params):
+    """Writes a container and its poses: for each box (left, top, width, height) its keypoints x, y, score in image pixels."""
+    folder = imported(root, "pose")
+    write_container(folder / f"{name}.zip", onnx, "top_down_pose_estimator", "pose_estimation")
+    poses = [[[round(float(value), 5) for value in point] for point in points] for points in poses]
+    expected = {"image": size, "params": params, "boxes": boxes, "poses": poses}
+    (folder / f"{name}.json").write_text(json.dumps(expected) + "\n")
+
+
+def top_down_poses(folder):
+    """Networks of one person's crop: SimCC and heatmaps by rtmlib and MMPose, ViTPose by transformers."""
+    from rtmlib import RTMPose
+    from transformers import VitPoseConfig, VitPoseForPoseEstimation, VitPoseImageProcessor
+    from transformers.models.vitpose.modeling_vitpose import VitPoseEstimatorOutput
+    from transformers.models.vitpose_backbone import VitPoseBackboneConfig
+
+    codecs = mmpose_codecs()
+    width, height = 90, 120
+    side = np.array([48, 64])
+    # Crops of OpenCV are exact where positions are multiples of 1/32 of a pixel: the side of a crop is 1.5 times that of the input.
+    boxes = [[43.5 - 28.8, 60 - 38.4, 57.6, 76.8], [10 - 28.8, 20.25 - 20, 57.6, 40.0]]
+    corners = [[left, top, left + across, top + down] for left, top, across, down in boxes]
+
+    class Columns(torch.nn.Module):
+        def __init__(self):
+            super().__init__()
+            self.maps = torch.nn.Conv2d(3, 5, 8, 8)
+            self.x, self.y = torch.nn.Linear(48, 96), torch.nn.Linear(48, 128)
+
+        def forward(self, pixels):
+            maps = self.maps(pixels).flatten(2)
+            return self.x(maps), self.y(maps)
+
+    class Maps(torch.nn.Sequential):
+        def __init__(self):
+            super().__init__(torch.nn.Conv2d(3, 8, 4, 4), torch.nn.ReLU(), torch.nn.Conv2d(8, 17, 3, padding=1))
+
+    for name, model, outputs in [("simcc", Columns(), ["simcc_x", "simcc_y"]), ("heatmaps", Maps(), ["output"])]:
+        randomise(model, 5)
+        example = torch.zeros(1, 3, 64, 48)
+        torch.onnx.export(
+            model.eval(), (example,), f"{name}.onnx", input_names=["input"], output_names=outputs, opset_version=17, dynamo=False
+        )
+        rtmpose = RTMPose(f"{name}.onnx", model_input_size=(48, 64))
+        poses = []
+        for box in corners:
+            crop, center, scale = rtmpose.preprocess(image(width, height), box)
+            found = rtmpose.inference(crop)
+            if name == "simcc":
+                points, _ = rtmpose.postprocess(found, center, scale)
+                # rtmlib averages the scores of column and row; MMPose has their minimum.
+                _, scores = codecs.get_simcc_maximum(*found)
+            else:
+                points, scores = codecs.get_heatmap_maximum(found[0][0])
+                points = codecs.refine_keypoints(points[None], found[0][0]) * 4
+                points = points / side * scale + center - scale / 2
+                scores = scores[None]
+            poses.append(np.concatenate([points[0], scores[0][:, None]], 1))
+        given = {} if name == "simcc" else {"layout": "heatmaps", "colour": "rgb", "levels": "imagenet"}
+        write_top_down(folder, name, f"{name}.onnx", [width, height], boxes, poses, **given)
+
+    backbone = VitPoseBackboneConfig(
+        image_size=[64, 48], hidden_size=16, num_hidden_layers=1, num_attention_heads=2, mlp_ratio=1, out_indices=[1]
+    )
+    model = VitPoseForPoseEstimation(VitPoseConfig(backbone_config=backbone, num_labels=17))
+    randomise(model, 7, density=1.0)
+    processor = VitPoseImageProcessor(size={"width": 48, "height": 64})
+
+    class Heatmaps(torch.nn.Module):
+        def __init__(self, inner):
+            super().__init__()
+            self.inner = inner
+
+        def forward(self, pixel_values):
+            return self.inner(pixel_values, return_dict=True).heatmaps
+
+    boxes = [[20.0, 15.5, 40.0, 80.0], [-10.0, 30.0, 60.0, 40.0]]
+    # Floats, so that the crop is not rounded to whole levels.
+    levels = torch.from_numpy(image(width, height).transpose(2, 0, 1).astype(np.float32))
+    pixels = processor([levels], [boxes], return_tensors="pt")["pixel_values"]
+    model = Heatmaps(model).eval()
+    names = {"input_names": ["pixel_values"], "output_names": ["heatmaps"]}
+    torch.onnx.export(model, (pixels[:1],), "vitpose.onnx", opset_version=17, dynamo=False, **names)
+    with torch.no_grad():
+        outputs = VitPoseEstimatorOutput(heatmaps=torch.cat([model(crop[None]) for crop in pixels]))
+    [found] = processor.post_process_pose_estimation(outputs, [boxes])
+    poses = [torch.cat([pose["keypoints"], pose["scores"][:, None]], 1) for pose in found]
+    write_top_down(folder, "vitpose", "vitpose.onnx", [width, height], boxes, poses)
+
+
 def main():
     folder = Path(sys.argv[1]).resolve()
     wanted = sys.argv[2:]
     with tempfile.TemporaryDirectory() as scratch:
         os.chdir(scratch)
-        for package in (ultralytics, yolox, torchvision, transformers, segmenters, depth_estimators):
+        for package in (ultralytics, yolox, torchvision, transformers, segmenters, depth_estimators, top_down_poses):
             if not wanted or package.__name__ in wanted:
                 package(folder)
 

@@ -6,6 +6,7 @@ use opendr_engine::{Error, Random, Result};
 use opendr_kernels::{Activation, Adam, AdamOptions, Compute, Initialisation, Network, Tape};
 
 use crate::observation::Observer;
+use crate::parameter_bytes;
 
 /// Motions with their gains, to train on.
 #[derive(Debug, Clone, Default)]
@@ -98,6 +99,7 @@ impl GainNetwork {
             let rate = RATE * (1.0 - step as f32 / steps as f32);
             adam.step(compute, rate, &mut parameters, &gradients);
         }
+        parameter_bytes::round(&mut parameters);
         Ok(Self::new(network, parameters, axes))
     }
 
@@ -105,9 +107,9 @@ impl GainNetwork {
         Self { network, parameters: Arc::new(parameters), axes, tape: Tape::default(), input: Vec::new() }
     }
 
-    /// Returns the parameters as little-endian `f32`.
+    /// Returns the parameters as little-endian `f16`.
     pub fn to_bytes(&self) -> Vec<u8> {
-        self.parameters.iter().flat_map(|value| value.to_le_bytes()).collect()
+        parameter_bytes::write(&self.parameters)
     }
 
     /// Creates a network from the bytes of [`Self::to_bytes`].
@@ -116,7 +118,7 @@ impl GainNetwork {
     /// Returns `Format` for bytes of another length.
     pub fn from_bytes(axes: usize, bytes: &[u8]) -> Result<Self> {
         let network = network(axes)?;
-        let parameters = crate::parameter_bytes::parse("the network of gains", bytes, network.parameters())?;
+        let parameters = parameter_bytes::parse("the network of gains", bytes, network.parameters())?;
         Ok(Self::new(network, parameters, axes))
     }
 

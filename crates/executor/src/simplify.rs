@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use half::f16;
 use opendr_engine::Result;
 use opendr_onnx::passes;
 use opendr_onnx::proto::GraphProto;
@@ -41,8 +42,7 @@ fn widen_half_constants(graph: &mut GraphProto) -> Result<()> {
             continue;
         }
         let halves = constant.data.get::<u16>(constant.region());
-        let raw_data =
-            halves.iter().flat_map(|&half| opendr_onnx::float_from_half(half).to_le_bytes()).collect();
+        let raw_data = halves.iter().flat_map(|&half| f16::from_bits(half).to_f32().to_le_bytes()).collect();
         let mut tensor = tensor.clone();
         tensor.name.clone_from(output);
         tensor.data_type = 1;

@@ -53,7 +53,8 @@ use opendr_planning::end_to_end::EndToEndPlanningRl;
 use opendr_pose::{
     fall_detection::FallDetector,
     pose_estimation::{
-        BlazePose, HighResolutionPoseEstimation, ImportedPoseEstimator, LightweightOpenPose, Movenet, Posenet,
+        BlazePose, HighResolutionPoseEstimation, ImportedPoseEstimator, ImportedTopDownPoseEstimator,
+        LightweightOpenPose, Movenet, Posenet,
     },
 };
 use opendr_rl::prior::{
@@ -140,6 +141,7 @@ pub fn registry() -> &'static Registry {
                 HighResolutionPoseEstimation,
                 BlazePose,
                 ImportedPoseEstimator,
+                ImportedTopDownPoseEstimator,
                 FallDetector,
             },
             #[cfg(feature = "hands")]

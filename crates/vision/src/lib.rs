@@ -5,7 +5,7 @@
 //! * [`Preprocess`]: the input tensor of a network from any [`Image`](opendr_engine::data::Image), in one pass.
 //! * [`codec`]: image files; [`draw`]: predictions drawn onto images; [`VideoWriter`]: video files.
 //! * [`stereo`]: disparities by semi-global matching; [`components`]: connected-component labelling; [`Similarity`]:
-//!   rotated crops; [`rgb_from_bayer`] and [`rgb_from_yuv422`]: raw pixel formats.
+//!   rotated crops, [`Warp`]: affine ones; [`rgb_from_bayer`] and [`rgb_from_yuv422`]: raw pixel formats.
 //!
 //! The types of images and targets are in `opendr-engine`, augmentation is in `opendr-datasets`, and networks run in
 //! `opendr-inference`.
@@ -34,6 +34,7 @@ mod similarity;
 pub mod source;
 pub mod stereo;
 mod video;
+mod warp;
 mod workers;
 mod yuv422;
 
@@ -44,4 +45,5 @@ pub use resize::resize;
 pub use similarity::Similarity;
 pub use source::{Frame, Source, SourceOptions, VideoInfo};
 pub use video::VideoWriter;
+pub use warp::Warp;
 pub use yuv422::{Yuv422, rgb_from_yuv422};

@@ -1,6 +1,6 @@
 //! Position of a rotated crop in its image.
 
-use opendr_engine::{Error, Result};
+use crate::Warp;
 
 /// A similarity transform between an image and a crop of it: scale, rotation and translation, without reflection.
 ///
@@ -107,31 +107,11 @@ impl Similarity {
         let [a, b] = self.turn;
         [a * x - b * y + self.origin[0], b * x + a * y + self.origin[1]]
     }
+}
 
-    /// Returns the image position of the centre of the first pixel, and the steps to the next column and the next
-    /// row, in image pixels times 2^32: [x, y] each. Positions are relative to the centre of the image's first pixel.
-    ///
-    /// # Errors
-    /// `InvalidInput` when a pixel of a crop of `size` lies more than 2^29 pixels away or is not finite.
-    pub(crate) fn fixed_point(&self, size: [usize; 2]) -> Result<[[i64; 2]; 3]> {
-        const ONE: f64 = 4_294_967_296.0;
-        const FURTHEST: f64 = 536_870_912.0;
-        let [width, height] = size.map(|side| side as f64);
-        let near = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]]
-            .into_iter()
-            .all(|corner| self.forward(corner).iter().all(|value| value.abs() <= FURTHEST));
-        if !self.is_regular() || !near {
-            return Err(Error::invalid_input(format!(
-                "a crop of scale {}, angle {} and origin {:?} has values that are not finite, a scale of 0, or lies too far outside the image",
-                self.scale(),
-                self.angle(),
-                self.origin
-            )));
-        }
-        let fixed = |value: f64| (value * ONE).round() as i64;
-        let [a, b] = self.turn;
-        let first = self.forward([0.5; 2]).map(|value| fixed(value - 0.5));
-        Ok([first, [fixed(a), fixed(b)], [fixed(-b), fixed(a)]])
+impl From<&Similarity> for Warp {
+    fn from(Similarity { turn: [a, b], origin }: &Similarity) -> Self {
+        Self { origin: *origin, right: [*a, *b], down: [-b, *a] }
     }
 }
 

@@ -1,20 +1,24 @@
 //! The protocol of docs/active_perception.md: several seeds of a camera policy in one world, on the persons or instances of the
 //! training, on others, and with another recogniser.
 //!
-//! `cargo run --release -p opendr-active --example sphere_view -- face [--seeds 5] [--timesteps 400000] [--episodes 500]
-//! [--first-seed 5000000] [--strip OUT.png]`
+//! `cargo run --release -p opendr-active --example sphere_view -- face [--model runs/face/model] [--seeds 5 | 2..5] [--timesteps 400000]
+//! [--episodes 500] [--first-seed 5000000] [--strip OUT.png]`
+//!
+//! `--model` takes the networks of a model that `opendr fit` trained, and its camera policy as that of seed 0.
 
 mod options;
 
 use std::time::Instant;
 
 use opendr_active::{
-    ActiveFitParams, ActiveTraining, BestViewEstimator, Comparison, EnvironmentScene, EpisodeStrip,
-    FreshViews, ViewClassifier, calibrated, compare, fit_view_classifier, fit_view_networks, train_active,
+    ActiveContainer, ActiveFitParams, ActiveModel, ActiveParams, BestViewEstimator, Comparison,
+    EnvironmentScene, EpisodeStrip, FreshViews, ViewClassifier, calibrated, compare, fit_view_classifier,
+    fit_view_networks, train_active,
 };
 use opendr_engine::environment::EnvironmentSource;
+use opendr_engine::model::Model;
 use opendr_engine::params::ParamMap;
-use opendr_engine::{Result, Silent};
+use opendr_engine::{Error, Result, Silent};
 use opendr_kernels::Compute;
 use opendr_simulation::RegisteredSource;
 
@@ -33,9 +37,19 @@ fn main() -> Result<()> {
         )
     };
     let [known, others] = [source(GALLERIES[0])?, source(GALLERIES[1])?];
-    let params = ActiveFitParams { view_episodes: options.view_episodes, ..ActiveFitParams::default() };
+    let params = ActiveFitParams {
+        total_timesteps: options.timesteps,
+        view_episodes: options.view_episodes,
+        ..ActiveFitParams::default()
+    };
     let other = ActiveFitParams { kernels: 12, hidden: 64, epochs: 6, seed: 9, ..params.clone() };
-    let (recogniser, best_view) = fit_networks(&known, &params)?;
+    let (recogniser, best_view, trained) = match &options.model {
+        Some(path) => read_model(path, options.subject.id())?,
+        None => {
+            let (recogniser, best_view) = fit_networks(&known, &params)?;
+            (recogniser, Some(best_view), None)
+        }
+    };
     // Persons of another gallery are other classes, whose recogniser is trained on their views; instances of objects and poses
     // are recognised by the same recogniser.
     let enrolled = match options.subject {
@@ -43,11 +57,14 @@ fn main() -> Result<()> {
         _ => recogniser.clone(),
     };
     let swapped = fit_recogniser(&known, &other)?;
-    for seed in 0..options.seeds {
-        let training = ActiveTraining { timesteps: options.timesteps, seed, ..ActiveTraining::default() };
+    for seed in options.seeds.clone() {
+        let training = ActiveFitParams { seed, ..params.clone() }.active_training(&ActiveParams::default());
         let part = Instant::now();
         let scene = || EnvironmentScene::new(&known, recogniser.clone());
-        let model = train_active(&scene, Some(best_view.clone()), &training, &mut |_, _| false)?;
+        let model = match (&trained, seed) {
+            (Some(model), 0) => model.clone(),
+            _ => train_active(&scene, best_view.clone(), &training, &mut |_, _| false)?,
+        };
         eprintln!("seed {seed}: {:?} after {:.0} s", model.fusion, part.elapsed().as_secs_f64());
         let run = |name: &str, comparison: Comparison| println!("seed {seed}, {name}\n\n{comparison}");
         let evaluate =
@@ -64,6 +81,21 @@ fn main() -> Result<()> {
     }
     println!("{:.0} s in all", begun.elapsed().as_secs_f64());
     Ok(())
+}
+
+/// Recogniser, estimator of the best view and camera policy of a model.
+fn read_model(
+    path: &str,
+    environment: &str,
+) -> Result<(ViewClassifier, Option<BestViewEstimator>, Option<ActiveModel>)> {
+    let container = ActiveContainer::read(&Model::open(path)?)?;
+    if container.environment != environment {
+        return Err(Error::invalid_param(format!(
+            "{path} was trained in {}; give a model of {environment}",
+            container.environment
+        )));
+    }
+    Ok((container.recogniser, container.model.best_view.clone(), Some(container.model)))
 }
 
 /// Views that train the networks of a source.

@@ -42,7 +42,7 @@ impl BestViewEstimator {
         self.0.config()
     }
 
-    /// Returns the parameters as little-endian `f32`.
+    /// Returns the parameters as little-endian `f16`.
     pub fn to_bytes(&self) -> Vec<u8> {
         self.0.to_bytes()
     }

@@ -76,7 +76,7 @@ impl ActiveFitParams {
     }
 
     /// Returns the settings of the camera policy's training.
-    pub(super) fn active_training(&self, params: &ActiveParams) -> ActiveTraining {
+    pub fn active_training(&self, params: &ActiveParams) -> ActiveTraining {
         ActiveTraining {
             timesteps: self.total_timesteps,
             environments: self.n_envs as usize,

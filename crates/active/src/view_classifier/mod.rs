@@ -59,7 +59,7 @@ impl ViewClassifier {
         &self.config
     }
 
-    /// Returns the parameters as little-endian `f32`.
+    /// Returns the parameters as little-endian `f16`.
     pub fn to_bytes(&self) -> Vec<u8> {
         self.network.to_bytes()
     }

@@ -6,6 +6,7 @@ use opendr_kernels::{Adam, AdamOptions, Compute, Initialisation, Network, Tape, 
 
 use super::{LabelledViews, ViewNetwork, ViewNetworkConfig, normalised_planes};
 use crate::environment_rig::EnvironmentRig;
+use crate::parameter_bytes;
 
 /// Number of views of a step.
 pub(crate) const BATCH: usize = 64;
@@ -118,6 +119,7 @@ impl<L: ViewLoss> ViewTrainee<L> {
     /// Returns the trained network; `finish` changes the parameters of the loss at last.
     pub(crate) fn into_network(mut self, finish: impl FnOnce(&mut [f32])) -> ViewNetwork {
         finish(&mut self.parameters[self.network.parameters()..]);
+        parameter_bytes::round(&mut self.parameters);
         ViewNetwork::new(self.config, self.network, self.parameters)
     }
 }

@@ -15,6 +15,7 @@ pub(crate) use fit::{BATCH, Trainee, ViewLoss, ViewTrainee, fit_views};
 pub use fit::{FreshViews, ViewSource};
 pub use labelled_views::LabelledViews;
 
+use crate::parameter_bytes;
 use crate::rgb_image::rgb_image;
 
 /// Sizes of a network over views.
@@ -86,9 +87,9 @@ impl ViewNetwork {
         &self.config
     }
 
-    /// The parameters as little-endian `f32`.
+    /// The parameters as little-endian `f16`.
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
-        self.parameters.iter().flat_map(|value| value.to_le_bytes()).collect()
+        parameter_bytes::write(&self.parameters)
     }
 
     /// Creates a network from the bytes of [`Self::to_bytes`]; `own` is the number of parameters after those of the network.
@@ -99,7 +100,7 @@ impl ViewNetwork {
         bytes: &[u8],
     ) -> Result<Self> {
         let network = config.network()?;
-        let parameters = crate::parameter_bytes::parse(what, bytes, network.parameters() + own)?;
+        let parameters = parameter_bytes::parse(what, bytes, network.parameters() + own)?;
         Ok(Self::new(config, network, parameters))
     }
 

@@ -1,5 +1,6 @@
 //! Header of an `.npy` file: element type, shape and order.
 
+use half::f16;
 use opendr_engine::{Error, Result};
 
 /// Largest size of a header in bytes; NumPy's own limit for the dictionary is 10,000.
@@ -71,21 +72,12 @@ impl NpyType {
         let unused = 64 - 8 * self.bytes as u32;
         match (self.kind, self.bytes) {
             (Kind::Signed, _) => (((word << unused) as i64) >> unused) as f64,
-            (Kind::Float, 2) => f64::from(f32_from_f16(word as u16)),
+            (Kind::Float, 2) => f16::from_bits(word as u16).to_f64(),
             (Kind::Float, 4) => f64::from(f32::from_bits(word as u32)),
             (Kind::Float, _) => f64::from_bits(word),
             (Kind::Bool, _) => f64::from(u8::from(word != 0)),
             (Kind::Unsigned, _) => word as f64,
         }
-    }
-}
-
-fn f32_from_f16(half: u16) -> f32 {
-    let (sign, exponent, mantissa) = (u32::from(half >> 15) << 31, half >> 10 & 31, u32::from(half & 1023));
-    match exponent {
-        0 => f32::from_bits(sign | (mantissa as f32 / 16_777_216.0).to_bits()),
-        31 => f32::from_bits(sign | 0x7f80_0000 | mantissa << 13),
-        _ => f32::from_bits(sign | (u32::from(exponent) + 112) << 23 | mantissa << 13),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Conversions of element types.
 
+use half::f16;
 use opendr_engine::Result;
 use opendr_kernels::Number;
 use opendr_onnx::proto::NodeProto;
@@ -55,7 +56,7 @@ impl Kernel for CastStep {
             Kind::U8 | Kind::Bool => self.write(io, |x: u8| (f64::from(x), i64::from(x))),
             Kind::I8 => self.write(io, |x: i8| (f64::from(x), i64::from(x))),
             Kind::F16 => self.write(io, |x: u16| {
-                let x = opendr_onnx::float_from_half(x);
+                let x = f16::from_bits(x).to_f32();
                 (f64::from(x), x as i64)
             }),
         }

@@ -1,7 +1,7 @@
 //! Reading of the weights, one layer after the other.
 
+use half::f16;
 use opendr_engine::{Error, Result};
-use opendr_onnx::float_from_half;
 
 /// Tags of weights in 16 bits, in 8 bits, and in 32 bits without reduction.
 const HALF: u32 = 0x0130_6B47;
@@ -56,7 +56,7 @@ impl<'a> Weights<'a> {
                 let bytes =
                     self.take(count.checked_mul(2).and_then(|bytes| bytes.checked_next_multiple_of(4)))?;
                 let halves = bytes.as_chunks().0.iter().take(count);
-                Ok(halves.map(|half| float_from_half(u16::from_le_bytes(*half))).collect())
+                Ok(halves.map(|half| f16::from_le_bytes(*half).to_f32()).collect())
             }
             BYTE => {
                 Err(Error::unsupported("weights of 8 bits are not supported; use a model of 16 or 32 bits"))

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use half::f16;
 use opendr_engine::{Error, Result};
 
 use super::model_json::{ModelJson, Quantization, Weight};
-use opendr_onnx::{Array, Data, element_count, float_from_half};
+use opendr_onnx::{Array, Data, element_count};
 
 /// Returns the weights by name, decoded from the files of the manifest in its order. Every size is checked against
 /// the available bytes before memory is allocated.
@@ -60,7 +61,7 @@ fn decode<'a>(weight: &Weight, bytes: &'a [u8]) -> Result<(Array, &'a [u8])> {
     let data = match (stored, dtype.as_str()) {
         ("float32", _) => Data::Float(own.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect()),
         ("float16", _) => {
-            Data::Float(own.as_chunks().0.iter().map(|&b| float_from_half(u16::from_le_bytes(b))).collect())
+            Data::Float(own.as_chunks().0.iter().map(|&b| f16::from_le_bytes(b).to_f32()).collect())
         }
         ("int32", _) => Data::Int(own.as_chunks().0.iter().map(|&b| i32::from_le_bytes(b).into()).collect()),
         ("bool", _) => Data::Bool(own.iter().map(|&byte| byte != 0).collect()),

@@ -1,9 +1,8 @@
 //! Element types of tensors, and decoding of elements.
 
+use half::f16;
 use opendr_engine::{Error, Result};
 use opendr_onnx::{Data, ElementType};
-
-use opendr_onnx::float_from_half;
 
 /// Element types, with the numbers of the file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,7 +73,7 @@ impl Element {
             (Self::Float32, _) => Data::Float(words.map(|&word| f32::from_le_bytes(word)).collect()),
             (Self::Float16, _) => {
                 let halves = bytes.as_chunks().0.iter();
-                Data::Float(halves.map(|&half| float_from_half(u16::from_le_bytes(half))).collect())
+                Data::Float(halves.map(|&half| f16::from_le_bytes(half).to_f32()).collect())
             }
             (Self::Int8, true) => Data::Int8(bytes.iter().map(|byte| byte.cast_signed()).collect()),
             (Self::UInt8, true) => Data::UInt8(bytes.to_vec()),

@@ -17,7 +17,7 @@ const TOKENS: usize = 12;
 /// Returns small pseudo-random numbers, as `float16`.
 fn halves(count: usize, seed: usize, scale: f32) -> Vec<u8> {
     let number = |at: usize| scale * ((at * 7919 + seed * 104_729) % 2003) as f32 / 1001.5 - scale;
-    (0..count).flat_map(|at| opendr_onnx::half_from_float(number(at)).to_le_bytes()).collect()
+    (0..count).flat_map(|at| half::f16::from_f32(number(at)).to_le_bytes()).collect()
 }
 
 #[derive(Default)]

@@ -5,17 +5,15 @@
 
 use std::collections::HashSet;
 
+use half::f16;
+
 use crate::array::bytes_of;
-use crate::half::half_from_float;
 use crate::proto::{DataType, GraphProto, NodeProto};
 use crate::{Array, Operator};
 
 /// Minimum size of converted tensors: for smaller ones, which include sizes and limits, the `Cast` costs more than it
 /// saves.
 const LEAST_ELEMENTS: usize = 128;
-
-/// Largest finite `float16`.
-const LARGEST: f32 = 65504.0;
 
 /// Stores the float weights as `float16`; returns the number of converted tensors.
 pub fn weights_to_fp16(graph: &mut GraphProto) -> usize {
@@ -26,7 +24,8 @@ pub fn weights_to_fp16(graph: &mut GraphProto) -> usize {
             continue;
         };
         let Some(floats) = array.as_floats() else { continue };
-        if floats.len() < LEAST_ELEMENTS || floats.iter().any(|value| value.is_nan() || value.abs() > LARGEST)
+        if floats.len() < LEAST_ELEMENTS
+            || floats.iter().any(|value| value.is_nan() || value.abs() > f16::MAX.to_f32())
         {
             continue;
         }
@@ -40,7 +39,7 @@ pub fn weights_to_fp16(graph: &mut GraphProto) -> usize {
         });
         tensor.data_type = DataType::Float16 as i32;
         tensor.float_data.clear();
-        tensor.raw_data = bytes_of(floats, |value| half_from_float(value).to_le_bytes());
+        tensor.raw_data = bytes_of(floats, |value| f16::from_f32(value).to_le_bytes());
     }
     let count = casts.len();
     graph.node.splice(0..0, casts);

@@ -5,7 +5,7 @@
 use opendr_onnx::proto::StringStringEntryProto;
 use opendr_onnx::{Builder, ElementType, GraphTensor, Operator, bytes_from_model, model_from_graph};
 use opendr_perception_testing::mutations::check_mutations;
-use opendr_pose::pose_estimation::ImportedPoseEstimator;
+use opendr_pose::pose_estimation::{ImportedPoseEstimator, ImportedTopDownPoseEstimator};
 
 /// Number of mutated files.
 const MUTATIONS: usize = 20_000;
@@ -58,4 +58,13 @@ fn mutations_never_panic() {
         network(&[("dets", &[1, 3, 5]), ("keypoints", &[1, 3, 4, 3])], &[]),
     ];
     check_mutations::<ImportedPoseEstimator>(&networks, MUTATIONS);
+}
+
+#[test]
+fn mutations_of_top_down_networks_never_panic() {
+    let networks = [
+        network(&[("simcc_x", &[1, 2, 64]), ("simcc_y", &[1, 2, 64])], &[]),
+        network(&[("simcc_y", &[1, 17, 5]), ("simcc_x", &[1, 17, 9])], &[]),
+    ];
+    check_mutations::<ImportedTopDownPoseEstimator>(&networks, MUTATIONS);
 }

@@ -11,7 +11,8 @@ use opendr_engine::{Device, Random};
 /// Panics when a network without a mutation does not load or run.
 pub fn check_mutations<L>(networks: &[Vec<u8>], count: usize)
 where
-    L: for<'a> Learner<Input<'a> = &'a Image>,
+    L: Learner,
+    for<'a> L::Input<'a>: From<&'a Image>,
 {
     let folder =
         std::env::temp_dir().join(format!("opendr-mutations-{}-{}", L::SPEC.name, std::process::id()));
@@ -36,7 +37,7 @@ where
         let mut learner = Handle::<L>::new(L::Params::default(), Device::Cpu).unwrap();
         let result = learner.load(&path).and_then(|()| {
             loaded += 1;
-            learner.infer(&image)
+            learner.infer((&image).into())
         });
         inferred += usize::from(result.is_ok());
         if mutations == 0 {

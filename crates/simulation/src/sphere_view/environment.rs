@@ -11,7 +11,8 @@ use opendr_engine::rig::{ViewRig as _, ViewSphere};
 use opendr_engine::target::Action;
 use opendr_engine::{Random, Result};
 
-use super::{Asset, CLASSES, Conditions, SIDE, SphereWorld, Subject};
+use super::subject::PERSONS;
+use super::{Asset, Conditions, SIDE, SphereWorld, Subject};
 use crate::classic_control::{check_length, not_begun};
 use crate::registration::checked;
 use crate::{NumpyRandom, Registration};
@@ -28,7 +29,7 @@ const COST: f64 = 0.02;
 /// Parameters of the `SphereView` environments.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct SphereViewParams {
-    /// The persons, or the instances of each class, that episodes choose from: ten persons, a hundred instances.
+    /// The persons, or the instances of each class, that episodes choose from: twenty persons, a hundred instances.
     #[param(default = 0, range = 0..=1_000_000)]
     pub gallery: u32,
 }
@@ -98,7 +99,7 @@ impl SphereView {
         let class = random.below(self.subject.classes() as usize) as u32;
         let gallery = u64::from(self.params.gallery);
         let (generated, instance) = match self.subject {
-            Subject::Face => (self.params.gallery * CLASSES + class, 0),
+            Subject::Face => (self.params.gallery * PERSONS + class, 0),
             Subject::Object | Subject::Pose => (class, 100 * gallery + random.below(100) as u64),
         };
         let asset = Asset::generate(self.subject, generated, instance)?;

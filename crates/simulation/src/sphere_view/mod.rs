@@ -30,7 +30,7 @@ pub use camera_image::OCCLUDER;
 pub use conditions::Conditions;
 pub(crate) use environment::registrations;
 pub use environment::{MOVES, SphereView, SphereViewParams};
-pub use subject::{CLASSES, Subject};
+pub use subject::Subject;
 pub use surface::TexturedMesh;
 pub use views::SubjectViews;
 pub use world::{SIDE, SphereWorld};

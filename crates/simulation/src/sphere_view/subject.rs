@@ -5,7 +5,7 @@ use opendr_engine::Random;
 /// What an environment has to recognise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
-    /// One of ten persons, by the front of the head.
+    /// One of twenty persons, by the front of the head.
     Face,
     /// One of fifteen products: three forms, five labels on the front of each.
     Object,
@@ -14,7 +14,7 @@ pub enum Subject {
 }
 
 /// Number of persons in a gallery of faces.
-pub const CLASSES: u32 = 10;
+pub(super) const PERSONS: u32 = 20;
 /// Number of products: three forms with five labels each.
 pub(super) const PRODUCTS: u32 = 15;
 /// Number of poses of a figure.
@@ -45,7 +45,7 @@ impl Subject {
     /// Returns the number of classes.
     pub fn classes(self) -> u32 {
         match self {
-            Self::Face => CLASSES,
+            Self::Face => PERSONS,
             Self::Object => PRODUCTS,
             Self::Pose => POSES,
         }

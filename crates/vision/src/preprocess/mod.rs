@@ -23,7 +23,7 @@ use std::sync::Arc;
 use opendr_engine::data::{ImageView, Layout};
 use opendr_engine::{Error, Result};
 
-use crate::similarity::Similarity;
+use crate::warp::Warp;
 use crate::workers;
 use band::{Band, MAX_BANDS, Row};
 pub use border::Border;
@@ -230,13 +230,13 @@ impl Preprocess {
     pub fn warp_into<T: InputSample>(
         &self,
         image: ImageView<'_>,
-        crop: &Similarity,
+        crop: impl Into<Warp>,
         out: &mut [T],
     ) -> Result<()> {
         if self.is_empty() || out.len() != self.len() {
             return Err(self.misfit(out.len()));
         }
-        let [first, right, down] = crop.fixed_point(self.size)?;
+        let [first, right, down] = crop.into().fixed_point(self.size)?;
         let source = Source::new(image, self.finish(&image));
         let position = |index: usize, from: [i64; 2], step: [i64; 2]| {
             [0, 1].map(|axis| from[axis] + index as i64 * step[axis])

@@ -3,7 +3,7 @@
 use opendr_engine::data::{ImageView, Layout};
 use opendr_engine::{Error, Pool, Result};
 use opendr_inference::{ElementType, Session, TensorInfo, TensorView};
-use opendr_vision::{ChannelOrder, InputGeometry, LetterboxAlign, Preprocess};
+use opendr_vision::{ChannelOrder, InputGeometry, InputSample, LetterboxAlign, Preprocess, Warp};
 
 use super::{Facts, InputColour, InputConvention, InputLevels, InputResize};
 
@@ -183,24 +183,43 @@ impl ExportedNetwork {
         self.run_through(&self.preprocess.with_size(width, height), image, sink)
     }
 
+    /// Runs the network on the part of an image that `crop` covers, black outside the image.
+    pub fn run_crop(
+        &self,
+        image: ImageView<'_>,
+        crop: Warp,
+        mut sink: impl FnMut(&[TensorView<'_>]) -> Result<()>,
+    ) -> Result<()> {
+        self.run_filled(&self.preprocess, &Crop { image, warp: crop }, |outputs, ()| sink(outputs))
+    }
+
     fn run_through(
         &self,
         preprocess: &Preprocess,
         image: ImageView<'_>,
-        mut sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
+        sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
+    ) -> Result<()> {
+        self.run_filled(preprocess, &image, sink)
+    }
+
+    fn run_filled<F: Fill>(
+        &self,
+        preprocess: &Preprocess,
+        image: &F,
+        mut sink: impl FnMut(&[TensorView<'_>], &F::Placed) -> Result<()>,
     ) -> Result<()> {
         let shape = preprocess.shape();
         let shape = if self.image.has_batch { &shape[..] } else { &shape[1..] };
         if self.image.is_bytes {
             let mut input = self.bytes.take();
             input.resize(preprocess.len(), 0);
-            let geometry = preprocess.run_into(image, &mut input[..])?;
-            self.run_on(TensorView::new(shape, &input[..])?, |outputs| sink(outputs, &geometry))
+            let placed = image.fill(preprocess, &mut input)?;
+            self.run_on(TensorView::new(shape, &input[..])?, |outputs| sink(outputs, &placed))
         } else {
             let mut input = self.floats.take();
             input.resize(preprocess.len(), 0.0);
-            let geometry = preprocess.run_into(image, &mut input[..])?;
-            self.run_on(TensorView::new(shape, &input[..])?, |outputs| sink(outputs, &geometry))
+            let placed = image.fill(preprocess, &mut input)?;
+            self.run_on(TensorView::new(shape, &input[..])?, |outputs| sink(outputs, &placed))
         }
     }
 
@@ -210,6 +229,36 @@ impl ExportedNetwork {
             inputs[*index] = constant.view()?;
         }
         self.session.run(&inputs[..=self.constants.len()], sink)
+    }
+}
+
+/// What fills the image input.
+trait Fill {
+    /// Where the image is in the input.
+    type Placed;
+
+    fn fill<T: InputSample>(&self, preprocess: &Preprocess, input: &mut [T]) -> Result<Self::Placed>;
+}
+
+impl Fill for ImageView<'_> {
+    type Placed = InputGeometry;
+
+    fn fill<T: InputSample>(&self, preprocess: &Preprocess, input: &mut [T]) -> Result<InputGeometry> {
+        preprocess.run_into(*self, input)
+    }
+}
+
+/// A part of an image.
+struct Crop<'a> {
+    image: ImageView<'a>,
+    warp: Warp,
+}
+
+impl Fill for Crop<'_> {
+    type Placed = ();
+
+    fn fill<T: InputSample>(&self, preprocess: &Preprocess, input: &mut [T]) -> Result<()> {
+        preprocess.warp_into(self.image, self.warp, input)
     }
 }
 

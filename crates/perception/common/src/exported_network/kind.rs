@@ -22,6 +22,8 @@ pub enum NetworkKind {
     ValueMap,
     /// Boxes with keypoints.
     PoseEstimator,
+    /// Keypoints of the person that the image shows.
+    TopDownPoseEstimator,
     /// Boxes; also what is not recognised, since a detector's error names what is to be set.
     Detector,
 }
@@ -36,6 +38,14 @@ impl NetworkKind {
             "depth" => Self::DepthEstimator,
             _ if ["dets", "keypoints"].iter().all(|name| facts.output_named(name).is_some()) => {
                 Self::PoseEstimator
+            }
+            _ if simcc_outputs(facts).is_some() => Self::TopDownPoseEstimator,
+            _ if facts
+                .outputs
+                .iter()
+                .any(|output| output.name == "heatmaps" && heatmaps(output).is_some()) =>
+            {
+                Self::TopDownPoseEstimator
             }
             _ if facts.outputs.len() == 1 && facts.outputs.iter().all(is_class_scores) => Self::Classifier,
             _ if depth_output(facts).is_some() => Self::DepthEstimator,
@@ -95,6 +105,28 @@ fn value_map_sides(output: &TensorInfo) -> Option<[Option<usize>; 2]> {
     };
     let is_map = output.element_type == ElementType::F32 && is_one(&batch);
     (is_map && is_side(height) && is_side(width)).then_some([height, width])
+}
+
+/// Returns the outputs with the scores of columns and of rows of keypoints (`SimCC`, as MMDeploy exports `RTMPose`), and the numbers of
+/// keypoints, columns and rows.
+pub fn simcc_outputs(facts: &Facts) -> Option<([usize; 2], [usize; 3])> {
+    let (x, y) = (facts.output_named("simcc_x")?, facts.output_named("simcc_y")?);
+    let sides = |output: usize| match facts.outputs[output].dims[..] {
+        [_, Some(keypoints), Some(bins)] => Some([keypoints, bins]),
+        _ => None,
+    };
+    let ([keypoints, columns], [others, rows]) = (sides(x)?, sides(y)?);
+    (keypoints == others).then_some(([x, y], [keypoints, columns, rows]))
+}
+
+/// Returns the number of keypoints, height and width of an output of heatmaps.
+pub fn heatmaps(output: &TensorInfo) -> Option<[usize; 3]> {
+    match (&output.dims[..], output.element_type) {
+        ([_, Some(keypoints), Some(height), Some(width)], ElementType::F32) => {
+            Some([*keypoints, *height, *width])
+        }
+        _ => None,
+    }
 }
 
 /// Returns the index of the output of depths: by the names that exporters give it, else the only output with one value for each pixel of

@@ -3,6 +3,7 @@
 mod blazepose;
 mod high_resolution_pose_estimation;
 mod imported_pose_estimator;
+mod imported_top_down;
 mod lightweight_open_pose;
 mod movenet;
 mod one_euro;
@@ -17,6 +18,9 @@ pub use high_resolution_pose_estimation::{
 };
 pub use imported_pose_estimator::{
     ImportedPoseEstimator, ImportedPoseEstimatorParams, KeypointOrder, PoseLayout,
+};
+pub use imported_top_down::{
+    ImportedTopDownPoseEstimator, ImportedTopDownPoseEstimatorParams, KeypointLayout, TopDownInputs,
 };
 #[cfg(feature = "training")]
 pub use lightweight_open_pose::LightweightOpenPoseFitParams;

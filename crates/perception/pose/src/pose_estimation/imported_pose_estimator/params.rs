@@ -39,7 +39,7 @@ opendr_engine::choices! {
 
 impl KeypointOrder {
     /// Returns the skeleton; `None` if it is not settled.
-    pub(super) const fn skeleton(self) -> Option<Skeleton> {
+    pub(in crate::pose_estimation) const fn skeleton(self) -> Option<Skeleton> {
         Some(match self {
             Self::Auto => return None,
             Self::Coco17 => Skeleton::Coco17,

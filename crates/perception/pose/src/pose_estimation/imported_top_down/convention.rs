@@ -1,0 +1,91 @@
+//! Conventions of exported top-down pose estimators: what tools write, and by what it is recognised.
+
+use opendr_engine::target::Skeleton;
+use opendr_engine::{Error, Result};
+use opendr_perception_common::exported_network::{
+    Facts, InputColour, InputConvention, InputLevels, InputResize, simcc_outputs,
+};
+
+use super::decode::Decoder;
+use super::params::{ImportedTopDownPoseEstimatorParams, KeypointLayout};
+use crate::pose_estimation::KeypointOrder;
+
+/// Side of an input whose size neither the network nor a parameter states.
+pub(super) const UNKNOWN: usize = 1;
+
+/// Input of RTMPose and ViTPose: RGB, normalised over ImageNet.
+const IMAGENET: InputConvention = InputConvention {
+    resize: InputResize::Stretch,
+    colour: InputColour::Rgb,
+    levels: InputLevels::ImageNet,
+    ..InputConvention::UNKNOWN
+};
+
+/// Recognises the layout of the outputs.
+pub(super) fn recognise(facts: &Facts) -> Option<KeypointLayout> {
+    if simcc_outputs(facts).is_some() {
+        return Some(KeypointLayout::Simcc);
+    }
+    // Heatmaps of transformers; ViTPose has no others.
+    let is_vit = facts.outputs.iter().any(|output| output.name == "heatmaps")
+        && facts.has_weights_of("patch_embeddings");
+    is_vit.then_some(KeypointLayout::UdpHeatmaps)
+}
+
+/// What is settled of a network.
+pub(super) struct Settled {
+    pub(super) decoder: Decoder,
+    pub(super) skeleton: Skeleton,
+    pub(super) input: InputConvention,
+}
+
+/// Combines the parameters with what was recognised, and writes the result into the parameters.
+///
+/// # Errors
+/// `Unsupported` when something is neither recognised nor given, when the outputs are not those of the layout, or when the skeleton has
+/// another number of keypoints.
+pub(super) fn settle(
+    params: &mut ImportedTopDownPoseEstimatorParams,
+    recognised: Option<KeypointLayout>,
+    facts: &Facts,
+    size: [usize; 2],
+) -> Result<Settled> {
+    if params.layout == KeypointLayout::Auto {
+        params.layout = recognised.unwrap_or(KeypointLayout::Auto);
+    }
+    if let Some(known) = recognised.map(|_| IMAGENET) {
+        if params.colour == InputColour::Auto {
+            params.colour = known.colour;
+        }
+        if params.levels == InputLevels::Auto {
+            params.levels = known.levels;
+        }
+    }
+    let is_missing = [
+        ("layout", params.layout == KeypointLayout::Auto),
+        ("colour", params.colour == InputColour::Auto),
+        ("levels", params.levels == InputLevels::Auto),
+        ("size", size.contains(&UNKNOWN)),
+    ];
+    let missing: Vec<_> =
+        is_missing.into_iter().filter(|(_, is_missing)| *is_missing).map(|(name, _)| name).collect();
+    if !missing.is_empty() {
+        return Err(facts.unsettled(&missing));
+    }
+    let decoder = Decoder::find(params.layout, facts)?;
+    let keypoints = decoder.keypoints();
+    if params.skeleton == KeypointOrder::Auto {
+        let is_coco = keypoints == Skeleton::Coco17.joints().len();
+        params.skeleton = if is_coco { KeypointOrder::Coco17 } else { KeypointOrder::Points };
+    }
+    let skeleton = params.skeleton.skeleton().unwrap_or(Skeleton::Points);
+    if !skeleton.has(keypoints) {
+        return Err(Error::unsupported(format!(
+            "the network has {keypoints} keypoints, and the skeleton {} {}; set another skeleton",
+            skeleton.name(),
+            skeleton.joints().len()
+        )));
+    }
+    let input = InputConvention { colour: params.colour, levels: params.levels, ..IMAGENET };
+    Ok(Settled { decoder, skeleton, input })
+}
