@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use opendr::data::{Image, Layout, PixelFormat};
+use opendr::data::{Image, Layout, Observation, PixelFormat};
 use opendr::dataset::{DatasetIterator as _, ExternalDataset};
 use opendr::datasets::{OpenOptions, Problems, open};
 use opendr::environment::{Environment as _, ResetOptions};
@@ -135,6 +135,10 @@ fn beside(port: &Port, first: &Value, shift: f32) -> Value {
             let (width, height) = (image.width(), image.height());
             let metres: Vec<_> = (0..width * height).map(|at| 0.5 + (at % 97) as f32 / 200.0).collect();
             Image::new(metres, width, height, PixelFormat::Grey, Layout::Hwc).unwrap().into()
+        }
+        (ValueType::Observation, "pose", _) => {
+            let pose = vec![0.1 * shift, 0.02 * shift, 3.5];
+            Observation::from_data(pose).unwrap().into()
         }
         (ValueType::Image, "right", Value::Image(image)) => image.clone().into(),
         (ValueType::Image, ..) => checkered(shift as usize).into(),
