@@ -166,10 +166,10 @@ mod tests {
         assert!(Similarity::from_points(&[[1.0, 2.0], [3.0, 2.0]], &[[4.0, 4.0]; 2]).is_none());
         assert!(Similarity::from_points(&[[f32::NAN, 2.0], [3.0, 2.0]], &[[1.0, 4.0], [2.0, 4.0]]).is_none());
         assert!(!Similarity::new(0.0, 0.0, [0.0; 2]).is_regular());
-        assert!(Similarity::new(f32::NAN, 0.0, [0.0; 2]).fixed_point([2, 2]).is_err());
-        assert!(Similarity::new(1.0, f32::INFINITY, [0.0; 2]).fixed_point([2, 2]).is_err());
-        assert!(Similarity::new(1.0, 0.0, [0.0, f32::NAN]).fixed_point([2, 2]).is_err());
-        assert!(Similarity::new(1e9, 0.0, [0.0; 2]).fixed_point([2, 2]).is_err());
+        assert!(Warp::from(&Similarity::new(f32::NAN, 0.0, [0.0; 2])).fixed_point([2, 2]).is_err());
+        assert!(Warp::from(&Similarity::new(1.0, f32::INFINITY, [0.0; 2])).fixed_point([2, 2]).is_err());
+        assert!(Warp::from(&Similarity::new(1.0, 0.0, [0.0, f32::NAN])).fixed_point([2, 2]).is_err());
+        assert!(Warp::from(&Similarity::new(1e9, 0.0, [0.0; 2])).fixed_point([2, 2]).is_err());
     }
 
     proptest! {

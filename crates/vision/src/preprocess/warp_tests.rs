@@ -5,6 +5,7 @@ use proptest::prelude::*;
 
 use super::tests::{FORMATS, ORDERS, level, noise_image};
 use super::*;
+use crate::Similarity;
 
 fn warped(preprocess: &Preprocess, view: ImageView<'_>, crop: &Similarity) -> Vec<f32> {
     let mut out = vec![f32::NAN; preprocess.len()];
