@@ -1,6 +1,9 @@
 """Active perception with the command: training, evaluation beside baselines, and rigs."""
 
 import json
+import signal
+import subprocess
+import time
 
 from patience import free_port
 
@@ -47,6 +50,18 @@ def test_a_camera_is_trained_measured_and_moved(opendr, tmp_path):
     # An image without a rig: the target has the motion to the next view.
     line = opendr.infer(*model, strip)[0]
     assert len(line["outputs"]["category"].get("action", [0, 0, 0])) == 3
+
+
+def test_ctrl_c_ends_a_training_at_once(opendr, tmp_path):
+    # Minutes of views before the first epoch.
+    arguments = ["--env", "SphereView-Pose-v1", "--out", str(tmp_path / "run"), "--view-episodes", "100000"]
+    command = [opendr.binary, "fit", "active_pose_recognition", *arguments]
+    running = subprocess.Popen(command, env=opendr.environment, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    time.sleep(2)
+    running.send_signal(signal.SIGINT)
+    _, errors = running.communicate(timeout=30)
+    assert running.returncode == 130, errors
+    assert not (tmp_path / "run/model").exists() and "panicked" not in errors
 
 
 def test_wrong_use_is_refused(opendr, tmp_path):

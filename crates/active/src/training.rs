@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use opendr_engine::Result;
 use opendr_engine::environment::Environment;
+use opendr_engine::{Error, Progress, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{Algorithm as _, NetworkConfig, Policy, Ppo, PpoConfig, Schedule};
 use opendr_simulation::vector::{Autoreset, EnvironmentVector};
@@ -50,15 +50,16 @@ const LATER_CALIBRATION: u64 = 1 << 33;
 
 /// Trains on scenes that `make` creates, one for each environment. `best_view` estimates the direction to the best view, which the
 /// policy then observes. `observer` receives the number of motions and the mean
-/// return; it returns whether to stop.
+/// return.
 ///
 /// # Errors
-/// Returns errors of the scenes; `InvalidParam` for settings out of range.
+/// Returns errors of the scenes; `InvalidParam` for settings out of range, `InvalidInput` where `progress` is stopped.
 pub fn train_active<S: ActiveScene + 'static>(
     make: &dyn Fn() -> Result<S>,
     best_view: Option<BestViewEstimator>,
     training: &ActiveTraining,
-    observer: &mut dyn FnMut(u64, f64) -> bool,
+    progress: &dyn Progress,
+    observer: &mut dyn FnMut(u64, f64),
 ) -> Result<ActiveModel> {
     training.stop.check()?;
     let compute = Compute::with_threads(training.threads);
@@ -71,13 +72,15 @@ pub fn train_active<S: ActiveScene + 'static>(
             camera_policy,
             [first, training.calibration_episodes],
             samples,
+            progress,
         )
     };
     let first = CALIBRATION + training.seed * 10_000;
     let random =
         record(Fusion::default(), &mut RandomBaseline::default(), first, &mut GainSamples::default())?;
     let fusion = fit_fusion(make()?.classes(), &random)?;
-    let policy = train_policy((make, fusion, &training.stop, &best_view), training, &compute, observer)?;
+    let policy =
+        train_policy((make, fusion, &training.stop, &best_view), training, (&compute, progress), observer)?;
     record(fusion, &mut RandomBaseline::default(), first, &mut samples)?;
     let mut camera_policy = TrainedPolicy::new(policy.clone());
     let own = record(fusion, &mut camera_policy, first + 5000, &mut samples)?;
@@ -91,17 +94,18 @@ pub fn train_active<S: ActiveScene + 'static>(
 /// Returns the model with its belief calibrated for another recogniser or other subjects; the policy is the same.
 ///
 /// # Errors
-/// Returns errors of the scene.
+/// Returns errors of the scene, and `InvalidInput` where `progress` is stopped.
 pub fn calibrated<S: ActiveScene>(
     model: &ActiveModel,
     make: &dyn Fn() -> Result<S>,
     episodes: u64,
+    progress: &dyn Progress,
 ) -> Result<ActiveModel> {
     let everything = StopRule { confidence: 1.0, ..model.stop };
     let mut camera_policy = TrainedPolicy::new(model.policy.clone());
     let run = (make, model.fusion, &everything, &model.best_view);
-    let own =
-        trajectories(run, &mut camera_policy, [LATER_CALIBRATION, episodes], &mut GainSamples::default())?;
+    let (seeds, mut samples) = ([LATER_CALIBRATION, episodes], GainSamples::default());
+    let own = trajectories(run, &mut camera_policy, seeds, &mut samples, progress)?;
     Ok(ActiveModel { fusion: fit_fusion(make()?.classes(), &own)?, ..model.clone() })
 }
 
@@ -113,11 +117,15 @@ fn trajectories<S: ActiveScene>(
     camera_policy: &mut dyn CameraPolicy,
     [first, episodes]: [u64; 2],
     samples: &mut GainSamples,
+    progress: &dyn Progress,
 ) -> Result<Vec<Trajectory>> {
     let mut view_loop = ViewLoop::new(make()?, fusion, stop.moves, best_view.clone())?;
     let seeds = first..first + episodes;
     seeds
         .map(|seed| {
+            if progress.stopped() {
+                return Err(Error::invalid_input("the calibration was stopped before its end"));
+            }
             run_episode(&mut view_loop, camera_policy, stop, seed, Some(samples)).map(|run| run.trajectory)
         })
         .collect()
@@ -126,8 +134,8 @@ fn trajectories<S: ActiveScene>(
 fn train_policy<S: ActiveScene + 'static>(
     (make, fusion, stop, best_view): Run<'_, S>,
     training: &ActiveTraining,
-    compute: &Compute,
-    observer: &mut dyn FnMut(u64, f64) -> bool,
+    (compute, progress): (&Compute, &dyn Progress),
+    observer: &mut dyn FnMut(u64, f64),
 ) -> Result<Policy> {
     let environment = || -> Result<Box<dyn Environment>> {
         Ok(Box::new(ActiveEnvironment::new(make()?, fusion, *stop, best_view.clone())?))
@@ -149,8 +157,8 @@ fn train_policy<S: ActiveScene + 'static>(
     let mut ppo = Ppo::new(&config, opendr_simulation::vector::VecEnvironment::spec(&environments))?
         .with_compute(compute.clone());
     ppo.train(&mut environments, training.timesteps, &mut |event| {
-        let stops = observer(event.report.timesteps, event.report.mean_return.unwrap_or(0.0));
-        Ok(if stops { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        observer(event.report.timesteps, event.report.mean_return.unwrap_or(0.0));
+        Ok(if progress.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     })?;
     Ok(ppo.policy().clone())
 }

@@ -63,7 +63,7 @@ fn main() -> Result<()> {
         let scene = || EnvironmentScene::new(&known, recogniser.clone());
         let model = match (&trained, seed) {
             (Some(model), 0) => model.clone(),
-            _ => train_active(&scene, best_view.clone(), &training, &mut |_, _| false)?,
+            _ => train_active(&scene, best_view.clone(), &training, &Silent, &mut |_, _| ())?,
         };
         eprintln!("seed {seed}: {:?} after {:.0} s", model.fusion, part.elapsed().as_secs_f64());
         let run = |name: &str, comparison: Comparison| println!("seed {seed}, {name}\n\n{comparison}");
@@ -76,7 +76,7 @@ fn main() -> Result<()> {
             EpisodeStrip::run(scene()?, &model, options.first_seed, 6)?.save(path.as_ref())?;
         }
         let scene = || EnvironmentScene::new(&known, swapped.clone());
-        let model = calibrated(&model, &scene, training.calibration_episodes)?;
+        let model = calibrated(&model, &scene, training.calibration_episodes, &Silent)?;
         run("another recogniser", evaluate(scene()?, &model)?);
     }
     println!("{:.0} s in all", begun.elapsed().as_secs_f64());
@@ -106,10 +106,14 @@ fn views(source: &dyn EnvironmentSource, params: &ActiveFitParams) -> Result<Fre
 fn fit_recogniser(source: &dyn EnvironmentSource, params: &ActiveFitParams) -> Result<ViewClassifier> {
     let begun = Instant::now();
     let compute = Compute::with_threads(params.num_workers as usize);
-    fit_view_classifier(&mut views(source, params)?, &params.view_training(), &compute, &mut |epoch, loss| {
-        eprintln!("recogniser, epoch {epoch}: loss {loss:.3}, {:.0} s", begun.elapsed().as_secs_f64());
-        false
-    })
+    fit_view_classifier(
+        &mut views(source, params)?,
+        &params.view_training(),
+        (&compute, &Silent),
+        &mut |epoch, loss| {
+            eprintln!("recogniser, epoch {epoch}: loss {loss:.3}, {:.0} s", begun.elapsed().as_secs_f64());
+        },
+    )
 }
 
 fn fit_networks(
@@ -118,8 +122,12 @@ fn fit_networks(
 ) -> Result<(ViewClassifier, BestViewEstimator)> {
     let begun = Instant::now();
     let compute = Compute::with_threads(params.num_workers as usize);
-    fit_view_networks(&mut views(source, params)?, &params.view_training(), &compute, &mut |epoch, losses| {
-        eprintln!("networks, epoch {epoch}: losses {losses:.3?}, {:.0} s", begun.elapsed().as_secs_f64());
-        false
-    })
+    fit_view_networks(
+        &mut views(source, params)?,
+        &params.view_training(),
+        (&compute, &Silent),
+        &mut |epoch, losses| {
+            eprintln!("networks, epoch {epoch}: losses {losses:.3?}, {:.0} s", begun.elapsed().as_secs_f64());
+        },
+    )
 }

@@ -1,6 +1,6 @@
 //! Training of the estimator of the best view.
 
-use opendr_engine::{Error, Random, Result};
+use opendr_engine::{Error, Progress, Random, Result};
 use opendr_kernels::Compute;
 
 use super::estimator::{BestViewEstimate, BestViewEstimator, COMPONENTS, NUMBERS, length};
@@ -76,19 +76,20 @@ impl BestViewEstimator {
     }
 }
 
-/// Trains by maximum likelihood for a number of epochs, from a seed. `observer` receives the number of the epoch and its mean loss; it returns whether to stop.
+/// Trains by maximum likelihood for a number of epochs, from a seed. `observer` receives the number of the epoch and its mean loss.
 ///
 /// # Errors
-/// Returns `InvalidInput` for views without the direction to the best one and for fewer than a batch of 64, `Internal` if the training
+/// Returns `InvalidInput` for views without the direction to the best one for fewer than a batch of 64, and where `progress` is stopped, `Internal` if the training
 /// diverges.
 pub fn fit_best_view(
     source: &mut dyn ViewSource,
     (epochs, seed): (usize, u64),
-    compute: &Compute,
-    observer: &mut dyn FnMut(usize, f32) -> bool,
+    (compute, progress): (&Compute, &dyn Progress),
+    observer: &mut dyn FnMut(usize, f32),
 ) -> Result<BestViewEstimator> {
-    let mut trainee = BestViewEstimator::trainee(source.views(0)?, seed)?;
-    fit_views(source, [&mut trainee], (epochs, seed), compute, &mut |epoch, [loss]| observer(epoch, loss))?;
+    let mut trainee = BestViewEstimator::trainee(source.views(0, progress)?, seed)?;
+    let mut observer = |epoch, [loss]: [f32; 1]| observer(epoch, loss);
+    fit_views(source, [&mut trainee], (epochs, seed), (compute, progress), &mut observer)?;
     Ok(BestViewEstimator::trained(trainee))
 }
 

@@ -40,45 +40,58 @@ impl<K: ActiveKind> LearnerActive for ActiveLearner<K> {
             )));
         }
         let base = base.map(ActiveContainer::read).transpose()?;
-        let needs_base = |what: &str| {
-            Error::invalid_param(format!("{what} = 0 keeps a part of the base model; load one first"))
-        };
         let mut statistics = Statistics::default();
-        let (recogniser, best_view) = match (&base, dataset.is_none() && fit_params.view_episodes == 0) {
-            (Some(base), true) => (base.recogniser.clone(), base.model.best_view.clone()),
-            (None, true) => return Err(needs_base("view_episodes")),
-            (base, false) => {
-                let (recogniser, best_view) = fit_networks(fit_params, dataset, env, job, &mut statistics)?;
-                let kept = base.as_ref().and_then(|base| base.model.best_view.clone());
-                (recogniser, best_view.or(kept))
-            }
-        };
-        if job.progress.stopped() {
-            return Ok(statistics);
+        match fit_all::<K>(base, params, fit_params, (dataset, env), job, &mut statistics) {
+            // Ctrl-C: what was measured until then is reported, and no model is written.
+            Err(_) if job.progress.stopped() => Ok(statistics),
+            done => done.map(|()| statistics),
         }
-        let scene = || EnvironmentScene::new(env, recogniser.clone());
-        let model = match (&base, fit_params.total_timesteps) {
-            (Some(base), 0) => calibrated(&base.model, &scene, fit_params.calibration_episodes)?,
-            (None, 0) => return Err(needs_base("total_timesteps")),
-            _ => fit_policy(params, fit_params, (&scene, best_view), job)?,
-        };
-        if job.progress.stopped() {
-            return Ok(statistics);
-        }
-        let comparison = compare(scene()?, &model, VALIDATION, VALIDATION_EPISODES, job.progress)?;
-        for row in &comparison.rows {
-            statistics.set(format!("{}_accuracy", row.camera_policy), row.report.accuracy.value);
-        }
-        if let Some(report) = comparison.of("policy") {
-            statistics.set("expected_calibration_error", report.calibration_error);
-            statistics.set("mean_views", report.mean_views);
-        }
-        let environment = env.make()?;
-        let spec = environment.spec();
-        let container = ActiveContainer { model, recogniser, environment: spec.id.clone() };
-        write_active_model::<K>(&job.model(), &container, params, spec)?;
-        Ok(statistics)
     }
+}
+
+/// Trains what the parameters ask for, and writes the model.
+fn fit_all<K: ActiveKind>(
+    base: Option<ActiveContainer>,
+    params: &ActiveParams,
+    fit_params: &ActiveFitParams,
+    (dataset, env): (Option<DatasetRef<'_>>, &dyn EnvironmentSource),
+    job: &FitJob<'_>,
+    statistics: &mut Statistics,
+) -> Result<()> {
+    let needs_base = |what: &str| {
+        Error::invalid_param(format!("{what} = 0 keeps a part of the base model; load one first"))
+    };
+    let (recogniser, best_view) = match (&base, dataset.is_none() && fit_params.view_episodes == 0) {
+        (Some(base), true) => (base.recogniser.clone(), base.model.best_view.clone()),
+        (None, true) => return Err(needs_base("view_episodes")),
+        (base, false) => {
+            let (recogniser, best_view) = fit_networks(fit_params, dataset, env, job, statistics)?;
+            let kept = base.as_ref().and_then(|base| base.model.best_view.clone());
+            (recogniser, best_view.or(kept))
+        }
+    };
+    let scene = || EnvironmentScene::new(env, recogniser.clone());
+    let model = match (&base, fit_params.total_timesteps) {
+        (Some(base), 0) => calibrated(&base.model, &scene, fit_params.calibration_episodes, job.progress)?,
+        (None, 0) => return Err(needs_base("total_timesteps")),
+        _ => fit_policy(params, fit_params, (&scene, best_view), job)?,
+    };
+    // The training is complete: Ctrl-C ends the comparison, and the model is written all the same.
+    let comparison = match compare(scene()?, &model, VALIDATION, VALIDATION_EPISODES, job.progress) {
+        Err(_) if job.progress.stopped() => None,
+        compared => Some(compared?),
+    };
+    for row in comparison.iter().flat_map(|comparison| &comparison.rows) {
+        statistics.set(format!("{}_accuracy", row.camera_policy), row.report.accuracy.value);
+    }
+    if let Some(report) = comparison.as_ref().and_then(|comparison| comparison.of("policy")) {
+        statistics.set("expected_calibration_error", report.calibration_error);
+        statistics.set("mean_views", report.mean_views);
+    }
+    let environment = env.make()?;
+    let spec = environment.spec();
+    let container = ActiveContainer { model, recogniser, environment: spec.id.clone() };
+    write_active_model::<K>(&job.model(), &container, params, spec)
 }
 
 /// Trains the recogniser on a data set, or on views of the environments, and the estimator of the best view on the latter.
@@ -106,39 +119,38 @@ fn fit_networks(
     let mut recognised = |loss: f32| {
         job.progress.advance(1);
         statistics.set("recogniser_loss", f64::from(loss));
-        job.progress.stopped()
     };
+    let run = (&compute, job.progress);
     job.progress.begin("training the recogniser", epochs, Unit::Items);
     // A camera policy that is kept goes on observing the estimator that it was trained with.
     let renders = params.total_timesteps > 0
         && params.view_episodes > 0
-        && rendered.views(0).inspect_err(|_| job.progress.end())?.has_best();
+        && rendered.views(0, job.progress).inspect_err(|_| job.progress.end())?.has_best();
     let trained = match &mut given {
-        Some(views) => fit_view_classifier(views, &training, &compute, &mut |_, loss| recognised(loss))
+        Some(views) => fit_view_classifier(views, &training, run, &mut |_, loss| recognised(loss))
             .map(|only| (only, None)),
         None if renders => {
             let mut best = 0.0;
-            let both = fit_view_networks(&mut rendered, &training, &compute, &mut |_, [loss, best_view]| {
+            let both = fit_view_networks(&mut rendered, &training, run, &mut |_, [loss, best_view]| {
                 best = best_view;
-                recognised(loss)
+                recognised(loss);
             });
             statistics.set("best_view_loss", f64::from(best));
             both.map(|(recogniser, best_view)| (recogniser, Some(best_view)))
         }
-        None => fit_view_classifier(&mut rendered, &training, &compute, &mut |_, loss| recognised(loss))
+        None => fit_view_classifier(&mut rendered, &training, run, &mut |_, loss| recognised(loss))
             .map(|only| (only, None)),
     };
     job.progress.end();
     let (recogniser, best_view) = trained?;
-    if best_view.is_some() || !renders || job.progress.stopped() {
+    if best_view.is_some() || !renders {
         return Ok((recogniser, best_view));
     }
     job.progress.begin("training the estimator of the best view", epochs, Unit::Items);
-    let run = (training.epochs, training.seed);
-    let best_view = fit_best_view(&mut rendered, run, &compute, &mut |_, loss| {
+    let epochs = (training.epochs, training.seed);
+    let best_view = fit_best_view(&mut rendered, epochs, run, &mut |_, loss| {
         job.progress.advance(1);
         statistics.set("best_view_loss", f64::from(loss));
-        job.progress.stopped()
     });
     job.progress.end();
     Ok((recogniser, Some(best_view?)))
@@ -154,10 +166,10 @@ fn fit_policy(
     let total = fit_params.total_timesteps;
     job.progress.begin("training the camera policy", Some(total), Unit::Steps);
     let mut done = 0;
-    let model = train_active(scene, best_view, &fit_params.active_training(params), &mut |steps, _| {
+    let training = fit_params.active_training(params);
+    let model = train_active(scene, best_view, &training, job.progress, &mut |steps, _| {
         job.progress.advance(steps.min(total) - done);
         done = steps.min(total);
-        job.progress.stopped()
     });
     job.progress.end();
     model

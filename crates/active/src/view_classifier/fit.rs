@@ -1,6 +1,6 @@
 //! Training of classifiers on labelled views.
 
-use opendr_engine::{Random, Result};
+use opendr_engine::{Progress, Random, Result};
 use opendr_kernels::{Compute, Matrix, MatrixMut, Product, log_softmax};
 
 use super::{ViewClassifier, ViewClassifierConfig, normalise};
@@ -25,38 +25,39 @@ impl ViewTraining {
     }
 }
 
-/// Trains a classifier by cross-entropy over the classes. `observer` receives the number of the epoch and its mean loss; it returns
-/// whether to stop.
+/// Trains a classifier by cross-entropy over the classes. `observer` receives the number of the epoch and its mean loss.
 ///
 /// # Errors
-/// Returns `InvalidInput` for fewer views than a batch of 64, `Internal` if the training diverges, errors of the source.
+/// Returns `InvalidInput` for fewer views than a batch of 64 and where `progress` is stopped, `Internal` if the training diverges, errors
+/// of the source.
 pub fn fit_view_classifier(
     source: &mut dyn ViewSource,
     training: &ViewTraining,
-    compute: &Compute,
-    observer: &mut dyn FnMut(usize, f32) -> bool,
+    (compute, progress): (&Compute, &dyn Progress),
+    observer: &mut dyn FnMut(usize, f32),
 ) -> Result<ViewClassifier> {
-    let (mut trainee, config) = ViewClassifier::trainee(source.views(0)?, training)?;
-    fit_views(source, [&mut trainee], training.run(), compute, &mut |epoch, [loss]| observer(epoch, loss))?;
+    let (mut trainee, config) = ViewClassifier::trainee(source.views(0, progress)?, training)?;
+    let mut observer = |epoch, [loss]: [f32; 1]| observer(epoch, loss);
+    fit_views(source, [&mut trainee], training.run(), (compute, progress), &mut observer)?;
     Ok(ViewClassifier::trained(trainee, config))
 }
 
 /// Trains a classifier and an estimator of the best view on the same views. `observer` receives the number of the epoch and the mean
-/// loss of each; it returns whether to stop.
+/// loss of each.
 ///
 /// # Errors
 /// As [`fit_view_classifier`] and [`fit_best_view`](crate::fit_best_view).
 pub fn fit_view_networks(
     source: &mut dyn ViewSource,
     training: &ViewTraining,
-    compute: &Compute,
-    observer: &mut dyn FnMut(usize, [f32; 2]) -> bool,
+    (compute, progress): (&Compute, &dyn Progress),
+    observer: &mut dyn FnMut(usize, [f32; 2]),
 ) -> Result<(ViewClassifier, BestViewEstimator)> {
-    let views = source.views(0)?;
+    let views = source.views(0, progress)?;
     let (mut trainee, config) = ViewClassifier::trainee(views, training)?;
     let mut best = BestViewEstimator::trainee(views, training.seed)?;
     let trainees: [&mut dyn Trainee; 2] = [&mut trainee, &mut best];
-    fit_views(source, trainees, training.run(), compute, observer)?;
+    fit_views(source, trainees, training.run(), (compute, progress), observer)?;
     Ok((ViewClassifier::trained(trainee, config), BestViewEstimator::trained(best)))
 }
 

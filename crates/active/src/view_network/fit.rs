@@ -1,7 +1,7 @@
 //! Training of networks on labelled views.
 
 use opendr_engine::environment::EnvironmentSource;
-use opendr_engine::{Error, Random, Result};
+use opendr_engine::{Error, Progress, Random, Result};
 use opendr_kernels::{Adam, AdamOptions, Compute, Initialisation, Network, Tape, WeightDecay};
 
 use super::{LabelledViews, ViewNetwork, ViewNetworkConfig, normalised_planes};
@@ -14,16 +14,16 @@ const RATE: f32 = 1e-3;
 
 /// Provides the views of each epoch.
 pub trait ViewSource {
-    /// Returns the views of an epoch, at least 64.
+    /// Returns the views of an epoch, at least 64 unless `progress` is stopped.
     ///
     /// # Errors
     /// Returns errors of what provides them.
-    fn views(&mut self, epoch: usize) -> Result<&LabelledViews>;
+    fn views(&mut self, epoch: usize, progress: &dyn Progress) -> Result<&LabelledViews>;
 }
 
 /// The same views in each epoch.
 impl ViewSource for LabelledViews {
-    fn views(&mut self, _: usize) -> Result<&LabelledViews> {
+    fn views(&mut self, _: usize, _: &dyn Progress) -> Result<&LabelledViews> {
         Ok(self)
     }
 }
@@ -58,12 +58,12 @@ impl FreshViews {
 }
 
 impl ViewSource for FreshViews {
-    fn views(&mut self, epoch: usize) -> Result<&LabelledViews> {
+    fn views(&mut self, epoch: usize, progress: &dyn Progress) -> Result<&LabelledViews> {
         let Self { rigs, first, episodes, collected } = self;
         let pair = epoch / 2;
         let views = match collected.take() {
             Some((of, views)) if of == pair => views,
-            _ => LabelledViews::collect(rigs, *first + pair as u64 * *episodes, *episodes)?,
+            _ => LabelledViews::collect(rigs, *first + pair as u64 * *episodes, *episodes, progress)?,
         };
         Ok(&collected.insert((pair, views)).1)
     }
@@ -151,22 +151,21 @@ impl<L: ViewLoss> Trainee for ViewTrainee<L> {
     }
 }
 
-/// Trains networks side by side on the same views. `observer` receives the number of the epoch and the mean loss of each; it returns
-/// whether to stop.
+/// Trains networks side by side on the same views. `observer` receives the number of the epoch and the mean loss of each.
 ///
 /// # Errors
-/// Returns `InvalidInput` for fewer views than a batch of 64, `Internal` if a training diverges, errors of the source.
+/// Returns `InvalidInput` for fewer views than a batch of 64 and where `progress` is stopped, `Internal` if a training diverges, errors of the source.
 pub(crate) fn fit_views<const N: usize>(
     source: &mut dyn ViewSource,
     mut trainees: [&mut dyn Trainee; N],
     (epochs, seed): (usize, u64),
-    compute: &Compute,
-    observer: &mut dyn FnMut(usize, [f32; N]) -> bool,
+    (compute, progress): (&Compute, &dyn Progress),
+    observer: &mut dyn FnMut(usize, [f32; N]),
 ) -> Result<()> {
     let mut random = Random::from_key([seed, 0xe3c]);
     let (mut input, mut order) = (Vec::new(), Vec::new());
     for epoch in 0..epochs {
-        let views = source.views(epoch)?;
+        let views = source.views(epoch, progress)?;
         if views.len() < BATCH {
             return Err(Error::invalid_input(format!(
                 "{} views to train on; give at least {BATCH}",
@@ -180,6 +179,9 @@ pub(crate) fn fit_views<const N: usize>(
         random.shuffle(&mut order);
         let (mut sums, batches) = ([0.0; N], views.len() / BATCH);
         for (batch, rows) in order.chunks_exact(BATCH).enumerate() {
+            if progress.stopped() {
+                return Err(Error::invalid_input("the training was stopped before its end"));
+            }
             for (to, row) in input.chunks_exact_mut(size).zip(rows) {
                 normalised_planes(views.view(*row), to);
             }
@@ -194,9 +196,7 @@ pub(crate) fn fit_views<const N: usize>(
                 "the loss of epoch {epoch} is {loss}: the training diverged"
             )));
         }
-        if observer(epoch, losses) {
-            break;
-        }
+        observer(epoch, losses);
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ use opendr_engine::data::Pixels;
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::rig::ViewRig as _;
 use opendr_engine::target::Action;
-use opendr_engine::{Error, Random, Result, ResultExt as _, Value, map_in_order};
+use opendr_engine::{Error, Progress, Random, Result, ResultExt as _, Value, map_in_order};
 use opendr_vision::resize;
 
 use crate::best_view::in_camera_frame;
@@ -36,11 +36,16 @@ const RANDOM: f32 = 0.25;
 const DEVIATION: f32 = 0.7;
 
 impl LabelledViews {
-    /// Collects the views of episodes in environments, one thread per environment. Seeds start at `first`.
+    /// Collects the views of episodes in environments, one thread per environment, until `progress` is stopped. Seeds start at `first`.
     ///
     /// # Errors
     /// Returns errors of the environments, and `InvalidInput` for an environment that does not report the class.
-    pub fn collect(rigs: &mut [EnvironmentRig], first: u64, episodes: u64) -> Result<Self> {
+    pub fn collect(
+        rigs: &mut [EnvironmentRig],
+        first: u64,
+        episodes: u64,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
         let Some(rig) = rigs.first() else { return Ok(Self::default()) };
         let mut views = Self { side: rig.side(), classes: rig.classes(), ..Self::default() };
         let collect = |rig: &mut EnvironmentRig, seed: u64| -> Result<(usize, Vec<u8>, Vec<[f32; 3]>)> {
@@ -73,7 +78,8 @@ impl LabelledViews {
             }
             Ok((class, pixels, best))
         };
-        map_in_order(rigs, first..first + episodes, collect, |collected| {
+        let seeds = (first..first + episodes).take_while(|_| !progress.stopped());
+        map_in_order(rigs, seeds, collect, |collected| {
             let (class, pixels, best) = collected?;
             views.pixels.extend(pixels);
             views.best.extend(best);

@@ -6,7 +6,7 @@ use opendr_active::{
 use opendr_engine::data::Image;
 use opendr_engine::environment::EnvironmentSource as _;
 use opendr_engine::rig::{ViewPose, ViewRig as _};
-use opendr_engine::{ErrorKind, Random};
+use opendr_engine::{ErrorKind, Random, Silent};
 use opendr_kernels::Compute;
 
 use crate::small::{source, views};
@@ -36,7 +36,7 @@ fn image(views: &LabelledViews, at: usize) -> Image {
 
 fn trained(ambiguous: bool) -> BestViewEstimator {
     let (mut views, compute) = (painted(2000, ambiguous), Compute::single());
-    fit_best_view(&mut views, (15, 1), &compute, &mut |_, _| false).unwrap()
+    fit_best_view(&mut views, (15, 1), (&compute, &Silent), &mut |_, _| ()).unwrap()
 }
 
 #[test]
@@ -84,13 +84,19 @@ fn two_directions_that_look_alike_are_both_likely() {
 #[test]
 fn every_second_epoch_has_other_views() {
     let mut source = views(10);
-    let first = source.views(0).unwrap().pixels.clone();
-    assert!(source.views(0).unwrap().pixels == first && source.views(0).unwrap().has_best());
-    assert!(source.views(1).unwrap().pixels == first && source.views(2).unwrap().pixels != first);
-    assert!(views(10).views(0).unwrap().pixels == first, "the same seed, other views");
-    let mut unknown = source.views(0).unwrap().clone();
+    let first = source.views(0, &Silent).unwrap().pixels.clone();
+    assert!(
+        source.views(0, &Silent).unwrap().pixels == first && source.views(0, &Silent).unwrap().has_best()
+    );
+    assert!(
+        source.views(1, &Silent).unwrap().pixels == first
+            && source.views(2, &Silent).unwrap().pixels != first
+    );
+    assert!(views(10).views(0, &Silent).unwrap().pixels == first, "the same seed, other views");
+    let mut unknown = source.views(0, &Silent).unwrap().clone();
     unknown.best.clear();
-    let error = fit_best_view(&mut unknown, (1, 1), &Compute::single(), &mut |_, _| false).unwrap_err();
+    let error =
+        fit_best_view(&mut unknown, (1, 1), (&Compute::single(), &Silent), &mut |_, _| ()).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::InvalidInput, "{error}");
 }
 
@@ -100,7 +106,7 @@ fn before_a_view_every_direction_is_as_likely() {
     let before = belief.best();
     assert!(before.certainty < 0.1 && before.mean.iter().all(|part| part.abs() < 0.01), "{before:?}");
     let (mut estimator, mut rig) = (
-        fit_best_view(&mut views(20), (1, 1), &Compute::single(), &mut |_, _| false).unwrap(),
+        fit_best_view(&mut views(20), (1, 1), (&Compute::single(), &Silent), &mut |_, _| ()).unwrap(),
         EnvironmentRig::new(source().make().unwrap()).unwrap(),
     );
     rig.begin(1).unwrap();

@@ -19,7 +19,7 @@ fn training() -> ActiveTraining {
 }
 
 fn train(training: &ActiveTraining) -> ActiveModel {
-    train_active(&|| Ok(ToyScene::new()), None, training, &mut |_, _| false).unwrap()
+    train_active(&|| Ok(ToyScene::new()), None, training, &Silent, &mut |_, _| ()).unwrap()
 }
 
 #[test]

@@ -4,6 +4,7 @@ use opendr_active::{
     BestViewEstimator, EnvironmentRig, FreshViews, ViewClassifier, ViewClassifierConfig, ViewTraining,
     fit_view_networks,
 };
+use opendr_engine::Silent;
 use opendr_engine::environment::EnvironmentSource as _;
 use opendr_engine::params::ParamMap;
 use opendr_kernels::Compute;
@@ -25,9 +26,8 @@ fn training(epochs: usize) -> ViewTraining {
 pub fn small_networks() -> (ViewClassifier, BestViewEstimator) {
     let mut losses = Vec::new();
     let (classifier, best_view) =
-        fit_view_networks(&mut views(40), &training(5), &Compute::single(), &mut |_, both| {
+        fit_view_networks(&mut views(40), &training(5), (&Compute::single(), &Silent), &mut |_, both| {
             losses.push(both);
-            false
         })
         .unwrap();
     assert!(losses[4][0] < losses[0][0] && losses[4][1] < losses[0][1], "{losses:?}");
