@@ -157,6 +157,13 @@ fn boxes_of_other_classes_and_damaged_ones_have_no_pose() {
         regions(ImportedTopDownPoseEstimatorParams { box_class: String::new(), ..params.clone() }).len(),
         3
     );
+    // Indices have the names of the list.
+    let mut named = all.clone();
+    named.classes = ["car", "person", "bus", "dog"].into_iter().collect();
+    named.boxes[0].name = Name::Index(1);
+    let found = poses(&mut open("simcc", params.clone()), &image, Some(&named)).poses;
+    let names: Vec<_> = found.iter().map(|pose| pose.region.as_ref().unwrap().name.to_string()).collect();
+    assert_eq!(names, ["person"]);
     // The damaged box has the highest score.
     assert_eq!(regions(ImportedTopDownPoseEstimatorParams { max_poses: 2, ..params }), [0.8]);
 }

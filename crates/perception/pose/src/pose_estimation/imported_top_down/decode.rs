@@ -1,6 +1,6 @@
 //! Keypoints from the outputs of a network.
 
-use opendr_engine::target::{BoundingBox, Keypoint, Name};
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Keypoint};
 use opendr_engine::{Error, Result};
 use opendr_inference::TensorView;
 use opendr_perception_common::exported_network::{Facts, heatmaps, simcc_outputs};
@@ -31,14 +31,17 @@ pub(super) struct Scratch {
 
 impl Scratch {
     /// Chooses the boxes in which poses are estimated.
-    pub(super) fn choose(&mut self, params: &ImportedTopDownPoseEstimatorParams, boxes: &[BoundingBox]) {
-        let is_chosen = |found: &BoundingBox| {
-            let is_of_class = match &found.name {
-                Name::Label(label) => params.box_class.is_empty() || **label == *params.box_class,
-                Name::Index(_) => true,
-            };
-            is_of_class && found.confidence >= params.threshold
+    pub(super) fn choose(
+        &mut self,
+        params: &ImportedTopDownPoseEstimatorParams,
+        detections: &BoundingBoxList,
+    ) {
+        let boxes = &detections.boxes;
+        let is_of_class = |found: &BoundingBox| {
+            let label = detections.label(found);
+            params.box_class.is_empty() || label.is_none_or(|label| label == params.box_class)
         };
+        let is_chosen = |found: &BoundingBox| found.confidence >= params.threshold && is_of_class(found);
         self.chosen.clear();
         self.chosen.extend(boxes.iter().enumerate().filter(|(_, found)| is_chosen(found)).map(|(at, _)| at));
         if self.chosen.len() > params.max_poses {

@@ -12,7 +12,9 @@ mod person_box;
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Inputs, Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::target::{BoundingBox, BoundingBoxList, Keypoint, Pose, PoseList, Skeleton};
+use opendr_engine::target::{
+    BoundingBox, BoundingBoxList, Classes, Keypoint, Name, Pose, PoseList, Skeleton,
+};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_perception_common::exported_network::{ExportedNetwork, Facts, ImageInput, NetworkKind};
 
@@ -83,16 +85,17 @@ impl Learner for ImportedTopDownPoseEstimator {
         let mut count = 0;
         match input.detections {
             Some(detections) => {
-                scratch.choose(&self.params, &detections.boxes);
+                scratch.choose(&self.params, detections);
                 for at in 0..scratch.chosen.len() {
-                    let found = &detections.boxes[scratch.chosen[at]];
+                    let found = (&detections.boxes[scratch.chosen[at]], &detections.classes);
                     count += usize::from(self.add(scratch, input.image, found, count, &mut poses.poses)?);
                 }
             }
             None => {
                 let [width, height] = [input.image.width(), input.image.height()].map(|side| side as f32);
                 let whole = BoundingBox { width, height, confidence: 1.0, ..BoundingBox::default() };
-                count += usize::from(self.add(scratch, input.image, &whole, count, &mut poses.poses)?);
+                let found = (&whole, &Classes::default());
+                count += usize::from(self.add(scratch, input.image, found, count, &mut poses.poses)?);
             }
         }
         poses.poses.truncate(count);
@@ -106,7 +109,7 @@ impl ImportedTopDownPoseEstimator {
         &self,
         scratch: &mut Scratch,
         image: &Image,
-        found: &BoundingBox,
+        (found, classes): (&BoundingBox, &Classes),
         index: usize,
         poses: &mut Vec<Pose>,
     ) -> Result<bool> {
@@ -152,6 +155,9 @@ impl ImportedTopDownPoseEstimator {
         match &mut pose.region {
             Some(reused) => reused.as_mut().clone_from(found),
             None => pose.region = Some(Box::new(found.clone())),
+        }
+        if let (Name::Index(index), Some(region)) = (&found.name, &mut pose.region) {
+            region.name = classes.name(*index).cloned().map_or_else(|| found.name.clone(), Name::Label);
         }
         Ok(true)
     }
