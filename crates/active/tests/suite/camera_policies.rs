@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::path::Path;
 
+use half::f16;
 use opendr_active::rig::{PanTiltZoom, RecordedViews};
 use opendr_active::{
     Active, ActiveModel, Belief, BestViewEstimator, CameraContext, CameraPolicy, EnvironmentRig, Fusion,
@@ -134,6 +135,11 @@ fn weights() -> impl Strategy<Value = Weights> {
         .prop_map(|(seed, scale, bias, head)| Weights { seed, scale, bias, head })
 }
 
+/// Returns the bytes of the nearest finite number of half precision.
+fn half(value: f32) -> [u8; 2] {
+    f16::from_f32(value).clamp(f16::MIN, f16::MAX).to_le_bytes()
+}
+
 impl Weights {
     /// Returns whether the network certainly has no finite output.
     fn is_damaged(&self) -> bool {
@@ -163,8 +169,7 @@ impl Weights {
         let config = ViewNetworkConfig { side: 12, kernels: vec![4], hidden: 8, outputs: 12 };
         let mut random = Random::new(self.seed);
         let count = (27 + 1) * 4 + (144 + 1) * 8 + (8 + 1) * 12;
-        let values = (0..count)
-            .map(|_| (0.3 * random.normal() as f32 * self.scale).clamp(f32::MIN, f32::MAX).to_le_bytes());
+        let values = (0..count).map(|_| half(0.3 * random.normal() as f32 * self.scale));
         BestViewEstimator::from_bytes(config, values.collect::<Vec<_>>().as_flattened()).unwrap()
     }
 
@@ -175,10 +180,11 @@ impl Weights {
         let motion = vec![0.5; axes];
         (0..128).for_each(|_| samples.add(&[random.uniform(-1.0, 1.0); Observer::LEN], &motion, 0.1));
         let bytes = GainNetwork::fit(&samples, axes, 1, self.seed, &Compute::single()).unwrap().to_bytes();
-        let scaled =
-            bytes.as_chunks::<4>().0.iter().map(|value| {
-                (f32::from_le_bytes(*value) * self.scale).clamp(f32::MIN, f32::MAX).to_le_bytes()
-            });
+        let scaled = bytes
+            .as_chunks::<2>()
+            .0
+            .iter()
+            .map(|value| half(f16::from_le_bytes(*value).to_f32() * self.scale));
         GainNetwork::from_bytes(axes, scaled.collect::<Vec<_>>().as_flattened()).unwrap()
     }
 }
