@@ -543,7 +543,7 @@ def top_down_poses(folder):
     codecs = mmpose_codecs()
     width, height = 90, 120
     side = np.array([48, 64])
-    # Crops of OpenCV are exact where positions are multiples of 1/32 of a pixel: the side of a crop is 1.5 times that of the input.
+    # Crops of OpenCV are exact for floats where positions are multiples of 1/32 of a pixel: a crop's side is 1.5 times the input's.
     boxes = [[43.5 - 28.8, 60 - 38.4, 57.6, 76.8], [10 - 28.8, 20.25 - 20, 57.6, 40.0]]
     corners = [[left, top, left + across, top + down] for left, top, across, down in boxes]
 
@@ -570,7 +570,7 @@ def top_down_poses(folder):
         rtmpose = RTMPose(f"{name}.onnx", model_input_size=(48, 64))
         poses = []
         for box in corners:
-            crop, center, scale = rtmpose.preprocess(image(width, height), box)
+            crop, center, scale = rtmpose.preprocess(image(width, height).astype(np.float32), box)
             found = rtmpose.inference(crop)
             if name == "simcc":
                 points, _ = rtmpose.postprocess(found, center, scale)

@@ -122,7 +122,7 @@ impl ImportedTopDownPoseEstimator {
         })?;
         let size = [image.width(), image.height()].map(|side| side as f32);
         let inside = |keypoint: &Keypoint| {
-            let is_known = keypoint.confidence >= params.keypoint_threshold && keypoint.is_detected();
+            let is_known = keypoint.confidence > 0.0 && keypoint.confidence >= params.keypoint_threshold;
             if !is_known {
                 return Keypoint::MISSING;
             }
