@@ -41,7 +41,10 @@ pub fn run(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: &Progre
     };
     let scene = || EnvironmentScene::new(&source, make()?);
     if other.is_some() {
-        container.model = calibrated(&container.model, &scene, CALIBRATION_EPISODES)?;
+        bar.begin("calibrating the belief", None, Unit::Items);
+        let model = calibrated(&container.model, &scene, CALIBRATION_EPISODES, bar);
+        bar.end();
+        container.model = model?;
     }
     let episodes = matches.get_one("episodes").copied().unwrap_or(EPISODES);
     let first_seed = matches.get_one("first-seed").copied().unwrap_or(FIRST_EVALUATION_SEED);
