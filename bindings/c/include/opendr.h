@@ -2347,6 +2347,52 @@ static inline opendr_status opendr_infer_pose_estimator(const opendr_learner *le
 }
 
 /*
+ * ImportedTopDownPoseEstimatorLearner: Runs your own top-down pose estimator, exported to ONNX by another tool, on the boxes of a detector.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, live, default 0.3): Score of a box below which no pose is estimated in it.
+ *   keypoint_threshold (a float 0..=1, live, default 0.3): Score below which keypoints are missing.
+ *   max_poses (an int 1..=1000, live, default 20): Maximum number of poses per image: those of the boxes with the highest scores.
+ *   box_class (a str, default person): Class of the boxes in which poses are estimated; boxes without a class name are all used, and with "" those of every class.
+ *   padding (a float 1..=4, live, default 1.25): Sides of the crop as a multiple of those of the box.
+ *   layout (a str, one of auto, simcc, heatmaps, udp_heatmaps, default auto): What the outputs are.
+ *   skeleton (a str, one of auto, coco17, blazepose33, left_hand21, right_hand21, points, default auto): Skeleton of the keypoints.
+ *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   size (an int 32..=4096 px, default none): Side of the network's input in pixels, for models of dynamic size.
+ *
+ * Inputs:
+ *   image (Image): Image.
+ *   detections (BoundingBoxList): Boxes of persons, or of other objects; without them the image shows one person. Optional: may be NULL.
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_top_down_pose_estimator(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("top_down_pose_estimator", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_top_down_pose_estimator(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_bounding_box_list *detections,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "detections";
+    inputs_[1].value = (const opendr_value *)detections;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * FallDetectorLearner: Detects fallen persons by a rule on their poses over time.
  *
  * Parameters:

@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 from opendr._drawing import draw as draw
+from opendr._drawing import draw_bounding_boxes as draw_bounding_boxes
 from opendr._drawing import get_bbox as get_bbox
 from opendr._upstream.pose_datasets import CocoTrainDataset as CocoTrainDataset
 from opendr._upstream.pose_datasets import CocoValDataset as CocoValDataset
@@ -18,7 +19,7 @@ from opendr._native_learner import NativeLearner
 from opendr._upstream.learners.people import HighResolutionPoses
 from opendr.engine.data import Image
 from opendr.engine.learners import Learner
-from opendr.engine.target import PoseList
+from opendr.engine.target import BoundingBoxList, PoseList
 
 class MovenetLearner(NativeLearner):
     """MoveNet detects 18 joints of one person (lightning) or of up to six (multipose).
@@ -360,6 +361,50 @@ class ImportedPoseEstimatorLearner(NativeLearner):
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., threshold: float = ..., keypoint_threshold: float = ..., iou_threshold: float = ..., max_poses: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> list[PoseList]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., threshold: float = ..., keypoint_threshold: float = ..., iou_threshold: float = ..., max_poses: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> Iterator[PoseList]: ...
+
+class ImportedTopDownPoseEstimatorLearner(NativeLearner):
+    """Runs your own top-down pose estimator, exported to ONNX by another tool, on the boxes of a detector.
+
+    Task: pose_estimation. ``infer`` takes:
+
+        image: Image. Image.
+        detections: BoundingBoxList (optional). Boxes of persons, or of other objects; without them the image
+            shows one person.
+
+    and returns: PoseList.
+
+    Args:
+        threshold: Score of a box below which no pose is estimated in it. (default 0.3; 0 to 1; live: may change
+            while running, and for one call of infer)
+        keypoint_threshold: Score below which keypoints are missing. (default 0.3; 0 to 1; live: may change while
+            running, and for one call of infer)
+        max_poses: Maximum number of poses per image: those of the boxes with the highest scores. (default 20; 1
+            to 1000; live: may change while running, and for one call of infer)
+        box_class: Class of the boxes in which poses are estimated; boxes without a class name are all used, and
+            with "" those of every class. (default 'person')
+        padding: Sides of the crop as a multiple of those of the box. (default 1.25; 1 to 4; live: may change
+            while running, and for one call of infer)
+        layout: What the outputs are. (default 'auto'; one of 'auto', 'simcc', 'heatmaps', 'udp_heatmaps')
+        skeleton: Skeleton of the keypoints. (default 'auto'; one of 'auto', 'coco17', 'blazepose33',
+            'left_hand21', 'right_hand21', 'points')
+        colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
+        levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
+            '-1_1', 'imagenet')
+        size: Side of the network's input in pixels, for models of dynamic size. (default None; 32 to 4096 px)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    keypoint_threshold: float
+    max_poses: int
+    box_class: str
+    padding: float
+    layout: Literal['auto', 'simcc', 'heatmaps', 'udp_heatmaps']
+    skeleton: Literal['auto', 'coco17', 'blazepose33', 'left_hand21', 'right_hand21', 'points']
+    colour: Literal['auto', 'rgb', 'bgr']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    size: Optional[int]
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., max_poses: int = ..., box_class: str = ..., padding: float = ..., layout: Literal['auto', 'simcc', 'heatmaps', 'udp_heatmaps'] = ..., skeleton: Literal['auto', 'coco17', 'blazepose33', 'left_hand21', 'right_hand21', 'points'] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: Optional[int] = ...) -> None: ...
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], detections: Optional[BoundingBoxList] = ..., *, threshold: float = ..., keypoint_threshold: float = ..., max_poses: int = ..., padding: float = ...) -> PoseList: ...
 
 class FilteredPose:
     """Not available yet: infer(img, track=True, smooth=True) of LightweightOpenPoseLearner smooths poses."""
