@@ -6,7 +6,7 @@ use opendr_perception_common::exported_network::{
     Facts, InputColour, InputConvention, InputLevels, InputResize, last_two,
 };
 
-use super::params::{ImportedPoseEstimatorParams, KeypointOrder, PoseLayout};
+use super::params::{ImportedPoseEstimatorParams, PoseLayout};
 
 /// What is known of a network.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,19 +114,8 @@ pub(super) fn settle(
             "the network has keypoints of {values} values, not of 2 or 3"
         )));
     }
-    if params.skeleton == KeypointOrder::Auto {
-        let is_person = classes.is_empty() || classes.iter().eq(["person"]);
-        let is_coco = keypoints == Skeleton::Coco17.joints().len() && is_person;
-        params.skeleton = if is_coco { KeypointOrder::Coco17 } else { KeypointOrder::Points };
-    }
-    let skeleton = params.skeleton.skeleton().unwrap_or(Skeleton::Points);
-    if !skeleton.has(keypoints) {
-        return Err(Error::unsupported(format!(
-            "the network has {keypoints} keypoints, and the skeleton {} {}; set another skeleton",
-            skeleton.name(),
-            skeleton.joints().len()
-        )));
-    }
+    let is_person = classes.is_empty() || classes.iter().eq(["person"]);
+    let skeleton = params.skeleton.settle(keypoints, is_person)?;
     Ok((Layout { layout: params.layout, keypoints, values, skeleton }, input))
 }
 

@@ -2,6 +2,7 @@
 
 use opendr_engine::params::Params;
 use opendr_engine::target::Skeleton;
+use opendr_engine::{Error, Result};
 use opendr_perception_common::exported_network::InputParams;
 use opendr_perception_common::suppression::SuppressionKind;
 
@@ -38,8 +39,32 @@ opendr_engine::choices! {
 }
 
 impl KeypointOrder {
+    /// Settles the skeleton of a number of keypoints: 17 of persons are COCO's unless another skeleton is set.
+    ///
+    /// # Errors
+    /// `Unsupported` when the skeleton has another number of keypoints.
+    pub(in crate::pose_estimation) fn settle(
+        &mut self,
+        keypoints: usize,
+        is_person: bool,
+    ) -> Result<Skeleton> {
+        if *self == Self::Auto {
+            let is_coco = is_person && keypoints == Skeleton::Coco17.joints().len();
+            *self = if is_coco { Self::Coco17 } else { Self::Points };
+        }
+        let skeleton = self.skeleton().unwrap_or(Skeleton::Points);
+        if skeleton.has(keypoints) {
+            return Ok(skeleton);
+        }
+        Err(Error::unsupported(format!(
+            "the network has {keypoints} keypoints, and the skeleton {} {}; set another skeleton",
+            skeleton.name(),
+            skeleton.joints().len()
+        )))
+    }
+
     /// Returns the skeleton; `None` if it is not settled.
-    pub(in crate::pose_estimation) const fn skeleton(self) -> Option<Skeleton> {
+    const fn skeleton(self) -> Option<Skeleton> {
         Some(match self {
             Self::Auto => return None,
             Self::Coco17 => Skeleton::Coco17,

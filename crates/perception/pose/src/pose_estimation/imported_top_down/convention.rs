@@ -1,14 +1,13 @@
 //! Conventions of exported top-down pose estimators: what tools write, and by what it is recognised.
 
+use opendr_engine::Result;
 use opendr_engine::target::Skeleton;
-use opendr_engine::{Error, Result};
 use opendr_perception_common::exported_network::{
     Facts, InputColour, InputConvention, InputLevels, InputResize, simcc_outputs,
 };
 
 use super::decode::Decoder;
 use super::params::{ImportedTopDownPoseEstimatorParams, KeypointLayout};
-use crate::pose_estimation::KeypointOrder;
 
 /// Side of an input whose size neither the network nor a parameter states.
 pub(super) const UNKNOWN: usize = 1;
@@ -73,19 +72,7 @@ pub(super) fn settle(
         return Err(facts.unsettled(&missing));
     }
     let decoder = Decoder::find(params.layout, facts)?;
-    let keypoints = decoder.keypoints();
-    if params.skeleton == KeypointOrder::Auto {
-        let is_coco = keypoints == Skeleton::Coco17.joints().len();
-        params.skeleton = if is_coco { KeypointOrder::Coco17 } else { KeypointOrder::Points };
-    }
-    let skeleton = params.skeleton.skeleton().unwrap_or(Skeleton::Points);
-    if !skeleton.has(keypoints) {
-        return Err(Error::unsupported(format!(
-            "the network has {keypoints} keypoints, and the skeleton {} {}; set another skeleton",
-            skeleton.name(),
-            skeleton.joints().len()
-        )));
-    }
+    let skeleton = params.skeleton.settle(decoder.keypoints(), true)?;
     let input = InputConvention { colour: params.colour, levels: params.levels, ..IMAGENET };
     Ok(Settled { decoder, skeleton, input })
 }
