@@ -103,9 +103,8 @@ impl Similarity {
         (a * a + b * b).is_normal() && self.origin.iter().all(|value| value.is_finite())
     }
 
-    fn forward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [a, b] = self.turn;
-        [a * x - b * y + self.origin[0], b * x + a * y + self.origin[1]]
+    fn forward(&self, point: [f64; 2]) -> [f64; 2] {
+        Warp::from(self).image_from_crop(point)
     }
 }
 

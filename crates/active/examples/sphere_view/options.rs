@@ -38,28 +38,20 @@ impl Options {
                 options.subject = subject;
                 continue;
             }
+            let value = arguments.next();
+            let value = value.ok_or_else(|| Error::invalid_param(format!("give {argument} a value")))?;
+            let number = || {
+                let number = value.parse().ok();
+                number.ok_or_else(|| Error::invalid_param(format!("give {argument} a number")))
+            };
             match argument.as_str() {
-                "--seeds" => {
-                    options.seeds = range(&arguments.next().unwrap_or_default())?;
-                    continue;
-                }
-                "--strip" => {
-                    options.strip = arguments.next();
-                    continue;
-                }
-                "--model" => {
-                    options.model = arguments.next();
-                    continue;
-                }
-                _ => {}
-            }
-            let value = arguments.next().and_then(|value| value.parse().ok());
-            let value = value.ok_or_else(|| Error::invalid_param(format!("give {argument} a number")))?;
-            match argument.as_str() {
-                "--timesteps" => options.timesteps = value,
-                "--episodes" => options.episodes = value,
-                "--view-episodes" => options.view_episodes = value,
-                "--first-seed" => options.first_seed = value,
+                "--seeds" => options.seeds = range(&value)?,
+                "--timesteps" => options.timesteps = number()?,
+                "--episodes" => options.episodes = number()?,
+                "--view-episodes" => options.view_episodes = number()?,
+                "--first-seed" => options.first_seed = number()?,
+                "--strip" => options.strip = Some(value),
+                "--model" => options.model = Some(value),
                 _ => {
                     return Err(Error::invalid_param(format!(
                         "no option {argument:?}; give face, object or pose, and --seeds, --timesteps, --episodes, --view-episodes, --first-seed, --model or --strip"

@@ -79,8 +79,8 @@ impl BestViewEstimator {
 /// Trains by maximum likelihood for a number of epochs, from a seed. `observer` receives the number of the epoch and its mean loss.
 ///
 /// # Errors
-/// Returns `InvalidInput` for views without the direction to the best one for fewer than a batch of 64, and where `progress` is stopped, `Internal` if the training
-/// diverges.
+/// Returns `InvalidInput` for views without the direction to the best one, for fewer than a batch of 64, and where `progress` is
+/// stopped, `Internal` if the training diverges.
 pub fn fit_best_view(
     source: &mut dyn ViewSource,
     (epochs, seed): (usize, u64),

@@ -39,12 +39,7 @@ impl NetworkKind {
             _ if ["dets", "keypoints"].iter().all(|name| facts.output_named(name).is_some()) => {
                 Self::PoseEstimator
             }
-            _ if simcc_outputs(facts).is_some() => Self::TopDownPoseEstimator,
-            _ if facts
-                .outputs
-                .iter()
-                .any(|output| output.name == "heatmaps" && heatmaps(output).is_some()) =>
-            {
+            _ if simcc_outputs(facts).is_some() || named_heatmaps(facts).is_some() => {
                 Self::TopDownPoseEstimator
             }
             _ if facts.outputs.len() == 1 && facts.outputs.iter().all(is_class_scores) => Self::Classifier,
@@ -117,6 +112,11 @@ pub fn simcc_outputs(facts: &Facts) -> Option<([usize; 2], [usize; 3])> {
     };
     let ([keypoints, columns], [others, rows]) = (sides(x)?, sides(y)?);
     (keypoints == others).then_some(([x, y], [keypoints, columns, rows]))
+}
+
+/// Returns the index of the output of heatmaps of keypoints, by the name that transformers gives it.
+pub fn named_heatmaps(facts: &Facts) -> Option<usize> {
+    facts.outputs.iter().position(|output| output.name == "heatmaps" && heatmaps(output).is_some())
 }
 
 /// Returns the number of keypoints, height and width of an output of heatmaps.

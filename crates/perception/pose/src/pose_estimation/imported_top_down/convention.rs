@@ -3,7 +3,7 @@
 use opendr_engine::Result;
 use opendr_engine::target::Skeleton;
 use opendr_perception_common::exported_network::{
-    Facts, InputColour, InputConvention, InputLevels, InputResize, simcc_outputs,
+    Facts, InputColour, InputConvention, InputLevels, InputResize, named_heatmaps, simcc_outputs,
 };
 
 use super::decode::Decoder;
@@ -26,8 +26,7 @@ pub(super) fn recognise(facts: &Facts) -> Option<KeypointLayout> {
         return Some(KeypointLayout::Simcc);
     }
     // Heatmaps of transformers; ViTPose has no others.
-    let is_vit = facts.outputs.iter().any(|output| output.name == "heatmaps")
-        && facts.has_weights_of("patch_embeddings");
+    let is_vit = named_heatmaps(facts).is_some() && facts.has_weights_of("patch_embeddings");
     is_vit.then_some(KeypointLayout::UdpHeatmaps)
 }
 
@@ -52,12 +51,12 @@ pub(super) fn settle(
     if params.layout == KeypointLayout::Auto {
         params.layout = recognised.unwrap_or(KeypointLayout::Auto);
     }
-    if let Some(known) = recognised.map(|_| IMAGENET) {
+    if recognised.is_some() {
         if params.colour == InputColour::Auto {
-            params.colour = known.colour;
+            params.colour = IMAGENET.colour;
         }
         if params.levels == InputLevels::Auto {
-            params.levels = known.levels;
+            params.levels = IMAGENET.levels;
         }
     }
     let is_missing = [

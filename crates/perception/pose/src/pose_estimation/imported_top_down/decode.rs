@@ -3,7 +3,7 @@
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Keypoint};
 use opendr_engine::{Error, Result};
 use opendr_inference::TensorView;
-use opendr_perception_common::exported_network::{Facts, heatmaps, simcc_outputs};
+use opendr_perception_common::exported_network::{Facts, heatmaps, named_heatmaps, simcc_outputs};
 
 use super::heatmap::{Heatmap, largest};
 use super::params::{ImportedTopDownPoseEstimatorParams, KeypointLayout};
@@ -66,11 +66,8 @@ impl Decoder {
                 })
             }
             KeypointLayout::Heatmaps | KeypointLayout::UdpHeatmaps => {
-                let output = facts
-                    .outputs
-                    .iter()
-                    .position(|output| output.name == "heatmaps")
-                    .or_else(|| facts.only_output(|output| heatmaps(output).is_some()));
+                let output =
+                    named_heatmaps(facts).or_else(|| facts.only_output(|output| heatmaps(output).is_some()));
                 let is_unbiased = layout == KeypointLayout::UdpHeatmaps;
                 output.and_then(|output| {
                     let [keypoints, height, width] = heatmaps(&facts.outputs[output])?;
@@ -126,9 +123,9 @@ impl Decoder {
             Self::Simcc { outputs: [x, y], keypoints: count, bins: [columns, rows] } => {
                 let [x, y] = [values(outputs, *x, count * columns)?, values(outputs, *y, count * rows)?];
                 for (x, y) in x.chunks_exact(*columns).zip(y.chunks_exact(*rows)) {
-                    let ([column, row], score) = simcc_peak(x, y);
+                    let [(column, across), (row, down)] = [x, y].map(largest);
                     let shares = [column as f64 / *columns as f64, row as f64 / *rows as f64];
-                    keypoints.push(place(shares, score));
+                    keypoints.push(place(shares, across.min(down)));
                 }
             }
             Self::Heatmaps { output, keypoints: count, size: [width, height], is_unbiased } => {
@@ -157,10 +154,4 @@ fn values<'a>(outputs: &[TensorView<'a>], at: usize, count: usize) -> Result<&'a
         "output {at} of the network has {} numbers, not the {count} of its keypoints; export it again",
         values.len()
     )))
-}
-
-/// Returns the column and the row of a keypoint, and the lower of their scores.
-fn simcc_peak(x: &[f32], y: &[f32]) -> ([usize; 2], f32) {
-    let [(column, across), (row, down)] = [x, y].map(largest);
-    ([column, row], across.min(down))
 }

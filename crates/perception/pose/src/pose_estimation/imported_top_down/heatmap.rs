@@ -52,7 +52,9 @@ impl Heatmap<'_> {
     /// where they have none.
     pub fn paraboloid(&self, peak: [usize; 2]) -> [f64; 2] {
         let [x, y] = peak.map(|at| at as i64);
-        let log = |dx: i64, dy: i64| self.smoothed([x + dx, y + dy]).clamp(SCORES[0], SCORES[1]).ln();
+        let kernel = kernel();
+        let log =
+            |dx: i64, dy: i64| self.smoothed(&kernel, [x + dx, y + dy]).clamp(SCORES[0], SCORES[1]).ln();
         let (middle, right, left) = (log(0, 0), log(1, 0), log(-1, 0));
         let (below, above) = (log(0, 1), log(0, -1));
         let (dx, dy) = (0.5 * (right - left), 0.5 * (below - above));
@@ -67,23 +69,25 @@ impl Heatmap<'_> {
     }
 
     /// Returns the smoothed score of a cell; cells outside have that of the border.
-    fn smoothed(&self, at: [i64; 2]) -> f64 {
+    fn smoothed(&self, kernel: &Kernel, at: [i64; 2]) -> f64 {
         let size = self.size.map(|side| side as i64);
         let [x, y] = [0, 1].map(|axis| at[axis].clamp(0, size[axis] - 1));
-        let weights: [f64; RADIUS as usize + 1] =
-            std::array::from_fn(|at| (-0.5 * (at as f64 / DEVIATION).powi(2)).exp());
-        let total = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
-        let taps = -RADIUS..=RADIUS;
         let row = |y: i64| {
             let cell = |x: i64| f64::from(self.values[(y * size[0] + reflected(x, size[0])) as usize]);
-            taps.clone().map(|tap| weights[tap.unsigned_abs() as usize] * cell(x + tap)).sum::<f64>()
+            (x - RADIUS..).zip(kernel).map(|(x, weight)| weight * cell(x)).sum::<f64>()
         };
-        let sum: f64 = taps
-            .clone()
-            .map(|tap| weights[tap.unsigned_abs() as usize] * row(reflected(y + tap, size[1])))
-            .sum();
-        sum / (total * total)
+        (y - RADIUS..).zip(kernel).map(|(y, weight)| weight * row(reflected(y, size[1]))).sum()
     }
+}
+
+/// Weights of the Gaussian along an axis, whose sum is 1.
+type Kernel = [f64; 2 * RADIUS as usize + 1];
+
+fn kernel() -> Kernel {
+    let weights: Kernel =
+        std::array::from_fn(|at| (-0.5 * ((at as f64 - RADIUS as f64) / DEVIATION).powi(2)).exp());
+    let total: f64 = weights.iter().sum();
+    weights.map(|weight| weight / total)
 }
 
 /// Returns the cell within `0..side` that a reflection at the borders shows at `at`.

@@ -120,35 +120,32 @@ impl ImportedTopDownPoseEstimator {
         self.network.run_crop(image.view(), person.warp(), |outputs| {
             self.decoder.run(outputs, &person, &mut scratch.keypoints)
         })?;
-        let size = [image.width(), image.height()].map(|side| side as f32);
-        let inside = |keypoint: &Keypoint| {
+        let [width, height] = [image.width(), image.height()].map(|side| side as f32);
+        let (mut sum, mut detected) = (0.0, 0);
+        for keypoint in &mut scratch.keypoints {
             let is_known = keypoint.confidence > 0.0 && keypoint.confidence >= params.keypoint_threshold;
             if !is_known {
-                return Keypoint::MISSING;
+                *keypoint = Keypoint::MISSING;
+                continue;
             }
-            Keypoint { x: keypoint.x.clamp(0.0, size[0]), y: keypoint.y.clamp(0.0, size[1]), ..*keypoint }
-        };
-        if poses.len() == index {
-            poses.push(Pose::default());
-        }
-        let pose = &mut poses[index];
-        match (self.skeleton, scratch.keypoints.as_chunks::<17>()) {
-            (Skeleton::Coco17, ([joints], [])) => {
-                opendr_from_coco(pose, &joints.map(|joint| inside(&joint)), params.keypoint_threshold);
-            }
-            (skeleton, _) => {
-                pose.skeleton = skeleton;
-                pose.keypoints.clear();
-                pose.keypoints.extend(scratch.keypoints.iter().map(inside));
-            }
-        }
-        let (mut sum, mut detected) = (0.0, 0);
-        for keypoint in scratch.keypoints.iter().map(inside).filter(Keypoint::is_detected) {
+            (keypoint.x, keypoint.y) = (keypoint.x.clamp(0.0, width), keypoint.y.clamp(0.0, height));
             sum += keypoint.confidence;
             detected += 1;
         }
         if detected == 0 {
             return Ok(false);
+        }
+        if poses.len() == index {
+            poses.push(Pose::default());
+        }
+        let pose = &mut poses[index];
+        match (self.skeleton, scratch.keypoints.as_chunks::<17>()) {
+            (Skeleton::Coco17, ([joints], [])) => opendr_from_coco(pose, joints, params.keypoint_threshold),
+            (skeleton, _) => {
+                pose.skeleton = skeleton;
+                pose.keypoints.clear();
+                pose.keypoints.extend_from_slice(&scratch.keypoints);
+            }
         }
         pose.id = None;
         pose.confidence = sum / detected as f32;
