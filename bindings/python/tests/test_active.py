@@ -9,6 +9,7 @@ from opendr.active import Active, Axis, Pose
 from opendr.engine.data import Image
 from opendr.engine.datasets import DatasetIterator
 from opendr.engine.target import Category, TrackingAnnotationList
+from opendr.perception import active_perception
 from opendr.perception.active_perception import ActivePoseRecognitionLearner
 
 WORLD = "SphereView-Pose-v1"
@@ -80,6 +81,24 @@ def test_a_learner_of_active_perception_moves_its_rig(learner, tmp_path):
     learner.moves = 0
     assert len(Active(learner).run(WORLD, seed=3).views) == 1
     learner.moves = 6
+
+
+@pytest.mark.parametrize("subject", ["Face", "Object", "Pose"])
+def test_pretrained_models(subject, tmp_path):
+    cls = getattr(active_perception, f"Active{subject}RecognitionLearner")
+    learner = cls(device="cpu")
+    view = np.full((3, 48, 64), 90, np.uint8)
+    with pytest.raises(FileNotFoundError, match=r"download\(\).*load\(\).*fit\(\)"):
+        learner.infer(view)
+    assert learner.load() is True and learner.is_ready and len(learner.classes) >= 10
+    category = learner.infer(view)
+    assert category.data in range(len(learner.classes)) and category.probabilities.sum() == pytest.approx(1.0, abs=1e-4)
+    numbers = learner.eval(episodes=20)
+    assert numbers["policy"]["accuracy"][0] > numbers["static"]["accuracy"][0] + 0.2
+    learner.save(tmp_path / "saved")
+    again = cls(device="cpu")
+    again.load(tmp_path / "saved")
+    assert again.infer(view).to_json() == category.to_json() and again.classes == learner.classes
 
 
 def test_a_function_and_a_rig_of_ones_own(learner):
