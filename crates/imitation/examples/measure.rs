@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use opendr_engine::environment::Step;
-use opendr_engine::{Random, Result};
+use opendr_engine::params::Params as _;
+use opendr_engine::{Error, Random, Result};
 use opendr_imitation::{
     Act, ActParams, ChunkMethod, ChunkTraining, ChunkTrainingParams, DemonstrationSet, DiffusionParams,
     DiffusionPolicy, RecordingOptions,
@@ -47,9 +48,18 @@ fn main() -> Result<()> {
     let training = ChunkTrainingParams { training_steps: number(4, 10_000), seed, ..Default::default() };
     let measurement = Measurement { environment, set, training, protocol };
     measurement.clone()?;
-    measurement.chunks::<DiffusionPolicy>(&DiffusionParams::default())?;
-    measurement.chunks::<Act>(&ActParams::default())?;
-    Ok(())
+    let mut diffusion = Vec::new();
+    for n_action_steps in [2, 3, 4, 8] {
+        for fixed_noise in [true, false] {
+            diffusion.push(DiffusionParams { n_action_steps, fixed_noise, ..Default::default() });
+        }
+    }
+    measurement.chunks::<DiffusionPolicy>(&diffusion)?;
+    let mut act = vec![ActParams::default()];
+    for n_action_steps in [1, 2, 4, 10] {
+        act.push(ActParams { temporal_ensemble: false, n_action_steps, ..Default::default() });
+    }
+    measurement.chunks::<Act>(&act)
 }
 
 fn print(name: &str, report: &EvaluationReport) {
@@ -68,7 +78,8 @@ fn print(name: &str, report: &EvaluationReport) {
 }
 
 impl Measurement {
-    fn chunks<M: ChunkMethod>(&self, params: &M::Params) -> Result<()>
+    /// Trains a policy, and measures it with each of these parameters on 200 episodes of their own, then with the best on the protocol's.
+    fn chunks<M: ChunkMethod>(&self, candidates: &[M::Params]) -> Result<()>
     where
         M::Config: Default,
     {
@@ -99,6 +110,32 @@ impl Measurement {
             begun.elapsed().as_secs_f64()
         );
         let success = |step: &Step| step.info.success();
+        let selection = EvaluationProtocol { episodes: 200, first_seed: 9_000_000, ..self.protocol };
+        let evaluated = |params: &M::Params| {
+            let mut world = opendr_simulation::make(&self.environment)?;
+            let mut controller = policy.controller(params);
+            evaluate_controller(&mut controller, &mut *world, &selection, &success)
+        };
+        let mut best: Option<(f64, &M::Params)> = None;
+        for pair in candidates.chunks(2) {
+            let reports: Vec<Result<EvaluationReport>> = std::thread::scope(|scope| {
+                let threads: Vec<_> = pair.iter().map(|params| scope.spawn(|| evaluated(params))).collect();
+                let joined = threads.into_iter().map(|thread| {
+                    thread.join().unwrap_or_else(|_| Err(Error::internal("an evaluation panicked")))
+                });
+                joined.collect()
+            });
+            for (params, report) in pair.iter().zip(reports) {
+                let report = report?;
+                print(&format!("  {:?}", params.to_map()), &report);
+                let score = report.success.as_ref().map_or(report.mean_return, |success| success.rate);
+                if best.is_none_or(|(top, _)| score > top) {
+                    best = Some((score, params));
+                }
+            }
+        }
+        let Some((_, params)) = best else { return Ok(()) };
+        println!("{}: selected {:?}", M::SPEC.name, params.to_map());
         let mut controller = policy.controller(params);
         print(M::SPEC.name, &evaluate_controller(&mut controller, &mut *world, &self.protocol, &success)?);
         Ok(())

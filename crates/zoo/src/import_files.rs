@@ -15,8 +15,9 @@ const MAX_BYTES: u64 = 1 << 31;
 /// Creates a container at `output` from a user's files, converted to ONNX: a model of TensorFlow Lite, TensorFlow.js (the JSON first,
 /// then the weights) or ncnn (the `.param` file first, then the weights), or Whisper weights of CTranslate2, in safetensors, or in
 /// two ONNX files exported by PyTorch (the encoder first). The format is detected from the content of the first file. Further
-/// files, such as a tokeniser, are copied; a single ONNX file becomes `model.onnx`. The container replaces `output` only if
-/// `check` accepts it, for example because the learner loads it.
+/// files, such as a tokeniser, are copied; a single ONNX file becomes `model.onnx`. `parts` are other models that the learner
+/// needs ([`Zoo::default_parts`](crate::Zoo::default_parts)). The container replaces `output` only if `check` accepts it, for
+/// example because the learner loads it.
 ///
 /// # Errors
 /// `NotFound` or `Io` for files that cannot be read, `Unsupported` for an unknown format, the error of an invalid file, and that
@@ -24,6 +25,7 @@ const MAX_BYTES: u64 = 1 << 31;
 pub fn import_files(
     manifest: Manifest,
     files: &[impl AsRef<Path>],
+    parts: &[(String, Model)],
     options: &ImportOptions,
     output: &Path,
     check: impl FnOnce(&Model) -> Result<()>,
@@ -61,6 +63,9 @@ pub fn import_files(
     }
     for (name, bytes) in &named[own..] {
         writer.add(name, bytes)?;
+    }
+    for (name, part) in parts {
+        writer.add_part(name, part)?;
     }
     writer.finish_checked(check)
 }

@@ -190,6 +190,24 @@ impl Zoo {
         item.variant.parts.iter().map(part).collect()
     }
 
+    /// Returns the parts of the default model of `learner`, such as the detector of a face recogniser: each with its name and the item
+    /// that it is, downloaded and verified. A container of a user's own network needs them too.
+    ///
+    /// # Errors
+    /// The errors of [`Self::download`] for a part. A learner without models has no parts.
+    pub fn default_parts(
+        &self,
+        learner: &str,
+        progress: &dyn Progress,
+    ) -> Result<Vec<(String, String, Model)>> {
+        let Ok(item) = self.find(learner) else { return Ok(Vec::new()) };
+        let part = |(name, model): (&str, Model)| {
+            let source = item.variant.parts.get(name).cloned().unwrap_or_default();
+            (name.to_owned(), source, model)
+        };
+        Ok(self.parts(&item, progress)?.into_iter().map(part).collect())
+    }
+
     /// Returns the cache folder of a container from the repository's address, which is used only while that repository is set.
     fn folder_of_repository(&self, item: &Item<'_>) -> Option<PathBuf> {
         let address = self.repository.as_ref()?.address()?;

@@ -10,6 +10,7 @@ use opendr::zoo::{ImportOptions, import_files};
 use opendr::{Result, ResultExt};
 
 use crate::exit::Outcome;
+use crate::progress_bar::ProgressBar;
 use crate::{learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
@@ -18,6 +19,7 @@ Examples:
   opendr import whisper encoder_model.onnx decoder_model.onnx tokenizer.json --out small   by Optimum
   opendr import whisper model.bin tokenizer.json --out small             by CTranslate2
   opendr import detector yolo.onnx --out mine                             a detector of another tool, recognised
+  opendr import face_recognition arcface.onnx --colour rgb --levels -1_1 --out mine   with the detector of the zoo's model
   opendr import LEARNER detector.tflite --classes names.txt --out mine
   opendr import LEARNER net.param net.bin --out mine                     from ncnn
   opendr infer whisper talk.wav --model small                          run the result";
@@ -64,7 +66,7 @@ pub fn grammar() -> Command {
                 .value_name("NAME,...")
                 .help("Outputs to keep [default: all]"),
         )
-        .args([loading::device_flag(), loading::quiet()])
+        .args([loading::device_flag(), loading::offline(), loading::quiet()])
         .after_help(EXAMPLES)
 }
 
@@ -86,8 +88,16 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         manifest.classes = text.lines().map(str::trim).filter(|name| !name.is_empty()).collect();
     }
     let device = loading::device(matches)?;
+    let mut parts = Vec::new();
+    let progress = ProgressBar::new(matches.get_flag("quiet"));
+    for (name, source, model) in loading::zoo(matches)?.default_parts(entry.spec.name, &progress)? {
+        if !matches.get_flag("quiet") {
+            eprintln!("{name}: {source}, as in the default model of {}", entry.spec.name);
+        }
+        parts.push((name, model));
+    }
     let mut recognised = Vec::new();
-    import_files(manifest, &files, &options, &output, |model| {
+    import_files(manifest, &files, &parts, &options, &output, |model| {
         let loaded = entry.make(&params, device).and_then(|mut learner| {
             learner.load(model.path())?;
             recognised = settled_on_load(&learner.params(), &params, entry);

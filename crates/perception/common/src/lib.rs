@@ -35,6 +35,7 @@ pub mod category_scores;
 pub mod clip_frames;
 #[cfg(feature = "training")]
 pub mod dynamic_sides;
+pub mod embedding_network;
 pub mod exported_network;
 pub mod frame_features;
 #[cfg(feature = "training")]

@@ -15,25 +15,59 @@ use crate::image_network::preprocess_from_input;
 /// `Format` when the network's input is not an image of a fixed size, or when the manifest's values are invalid.
 pub fn preprocess_from_manifest(model: &Model, input: &TensorInfo, usual: f32) -> Result<Preprocess> {
     let preprocess = preprocess_from_input(input)?;
-    let described = model.manifest().inputs.get("image");
-    let entry = |key: &str| described.and_then(|image| image.get(key));
-    let mean = entry("mean").map_or(Ok([usual; 3]), three)?;
-    let std = entry("std").map_or(Ok([usual; 3]), three)?;
-    if std.contains(&0.0) {
-        return Err(Error::format(
-            "inputs.image of the model has std = 0; give the standard deviation of its training",
-        ));
-    }
-    let order = match entry("colour").and_then(Value::as_str) {
-        None | Some("rgb") => ChannelOrder::Rgb,
-        Some("bgr") => ChannelOrder::Bgr,
-        Some(other) => {
-            return Err(Error::format(format!(
-                "inputs.image.colour of the model is {other:?}; it must be rgb or bgr"
-            )));
+    let StatedInput { mean, std, order } = StatedInput::of(model)?;
+    let order = order.unwrap_or(ChannelOrder::Rgb);
+    Ok(preprocess.order(order).normalise(mean.unwrap_or([usual; 3]), std.unwrap_or([usual; 3])))
+}
+
+/// What a manifest states in `inputs.image`, in the order of the network's channels.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct StatedInput {
+    /// Mean level of the training, of 0..=255.
+    pub mean: Option<[f32; 3]>,
+    /// Standard deviation of the levels.
+    pub std: Option<[f32; 3]>,
+    /// Order of the colour channels.
+    pub order: Option<ChannelOrder>,
+}
+
+impl StatedInput {
+    /// Reads the manifest of a model.
+    ///
+    /// # Errors
+    /// `Format` for invalid values.
+    pub fn of(model: &Model) -> Result<Self> {
+        let described = model.manifest().inputs.get("image");
+        let entry = |key: &str| described.and_then(|image| image.get(key));
+        let std = entry("std").map(three).transpose()?;
+        if std.is_some_and(|std| std.contains(&0.0)) {
+            return Err(Error::format(
+                "inputs.image of the model has std = 0; give the standard deviation of its training",
+            ));
         }
-    };
-    Ok(preprocess.order(order).normalise(mean, std))
+        let order = match entry("colour").and_then(Value::as_str) {
+            None => None,
+            Some("rgb") => Some(ChannelOrder::Rgb),
+            Some("bgr") => Some(ChannelOrder::Bgr),
+            Some(other) => {
+                return Err(Error::format(format!(
+                    "inputs.image.colour of the model is {other:?}; it must be rgb or bgr"
+                )));
+            }
+        };
+        Ok(Self { mean: entry("mean").map(three).transpose()?, std, order })
+    }
+
+    /// Returns mean and standard deviation of red, green and blue, if both are stated.
+    pub fn rgb_normalisation(&self) -> Option<[[f32; 3]; 2]> {
+        let both = [self.mean?, self.std?];
+        Some(both.map(|mut values| {
+            if self.order == Some(ChannelOrder::Bgr) {
+                values.reverse();
+            }
+            values
+        }))
+    }
 }
 
 fn three(numbers: &Value) -> Result<[f32; 3]> {

@@ -46,6 +46,19 @@ opendr_engine::choices! {
     }
 }
 
+impl InputLevels {
+    /// Returns mean and standard deviation of the levels 0..=255 of red, green and blue; `None` if they are to be recognised.
+    pub fn normalisation(self) -> Option<[[f32; 3]; 2]> {
+        match self {
+            Self::Auto => None,
+            Self::Bytes => Some([[0.0; 3], [1.0; 3]]),
+            Self::Unit => Some([[0.0; 3], [255.0; 3]]),
+            Self::Signed => Some([[127.5; 3], [127.5; 3]]),
+            Self::ImageNet => Some([[123.675, 116.28, 103.53], [58.395, 57.12, 57.375]]),
+        }
+    }
+}
+
 /// Parameters of a network's image input.
 #[derive(Debug, Clone, Params)]
 pub struct InputParams {

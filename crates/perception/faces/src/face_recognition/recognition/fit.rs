@@ -9,9 +9,12 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Error, Result, Statistics, Unit, Value};
 use opendr_face_detection::face_detector::{FaceInput, largest_face};
+use opendr_perception_common::embedding_network::EmbeddingInputParams;
+use opendr_perception_common::exported_network::{InputColour, InputLevels};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::{TRAINABLE, network_from_base};
 use opendr_training::{TrainingParams, fit_network, open_for_training, seeded_device};
+use serde_json::json;
 
 use super::gallery::Gallery;
 use super::network::Network;
@@ -86,11 +89,20 @@ fn train(
     dataset: &dyn DatasetIterator,
     job: &FitJob<'_>,
 ) -> Result<Statistics> {
+    let EmbeddingInputParams { colour, levels } = params.input;
+    if (colour, levels) != (InputColour::Auto, InputLevels::Auto) {
+        return Err(Error::unsupported(
+            "mode full trains another network than the loaded one, with an input of its own: leave out colour and levels, and begin \
+             with the pretrained model",
+        ));
+    }
     let classes = classes_to_train(dataset, None, "classes")?.len();
     let mut manifest = base.manifest().clone();
     manifest.variant.clear();
     manifest.metrics.clear();
     manifest.classes = Classes::default();
+    let input = json!({"image": {"colour": "rgb", "mean": [0, 0, 0], "std": [1, 1, 1]}});
+    manifest.write_inputs(&input)?;
     let of_parts = base.manifest().files.iter().filter(|file| file.name.contains('/'));
     let parts = of_parts.map(|file| Ok((file.name.clone(), base.file(&file.name)?)));
     let finder = FaceRecognition::load(base, params.clone(), job.device)?;

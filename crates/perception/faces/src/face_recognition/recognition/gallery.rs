@@ -3,6 +3,7 @@
 use opendr_engine::model::Model;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, JsonFormat, Result, ResultExt as _};
+use opendr_perception_common::embedding_network::normalise;
 use serde::{Deserialize, Serialize};
 
 /// File name of the number of images per class.
@@ -31,16 +32,6 @@ struct Person {
     name: String,
     /// Embeddings of length 1, one after the other.
     embeddings: Vec<f32>,
-}
-
-/// Scales an embedding to length 1. Returns `false` and leaves it unchanged when its length is 0 or not finite.
-pub(crate) fn normalise(embedding: &mut [f32]) -> bool {
-    let length = embedding.iter().map(|value| value * value).sum::<f32>().sqrt();
-    let is_direction = length.is_normal();
-    if is_direction {
-        embedding.iter_mut().for_each(|value| *value /= length);
-    }
-    is_direction
 }
 
 impl Gallery {

@@ -14,17 +14,17 @@ mod objective;
 
 use std::sync::Arc;
 
-use opendr_engine::data::{Image, Layout};
+use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_face_detection::face_detector::{FaceDetector, FaceInput, whole_image};
-use opendr_perception_common::image_network::ImageNetwork;
-use opendr_vision::{Preprocess, Similarity};
+use opendr_perception_common::embedding_network::{EmbeddingInputParams, EmbeddingNetwork};
+use opendr_vision::Similarity;
 
-use gallery::{Gallery, normalise};
+use gallery::Gallery;
 
 #[cfg(feature = "training")]
 pub use fit::{FaceRecognitionFitParams, FaceRecognitionMode};
@@ -41,6 +41,9 @@ pub struct FaceRecognitionParams {
     /// Content of the images.
     #[param(live, former = "picture")]
     pub input_kind: FaceInput,
+    /// Input of the network of embeddings.
+    #[param(flatten)]
+    pub input: EmbeddingInputParams,
 }
 
 /// A loaded face recogniser.
@@ -52,7 +55,7 @@ pub struct FaceRecognitionParams {
 pub struct FaceRecognition {
     params: FaceRecognitionParams,
     finder: FaceDetector,
-    network: ImageNetwork,
+    network: EmbeddingNetwork,
     gallery: Gallery,
     persons: Classes,
     unknown: Name,
@@ -65,9 +68,9 @@ struct Scratch {
     embedding: Vec<f32>,
 }
 
-/// Side of the network's input, in pixels.
+/// Side of the input of MobileFace and of the network that `fit` trains, in pixels.
 const SIDE: usize = 112;
-/// ArcFace's positions of eyes, nose and corners of the mouth in it (insightface's `arcface_dst`).
+/// ArcFace's positions of eyes, nose and corners of the mouth in an input of that side (insightface's `arcface_dst`).
 const TEMPLATE: [[f32; 2]; 5] =
     [[38.2946, 51.6963], [73.5318, 51.5014], [56.0252, 71.7366], [41.5493, 92.3655], [70.7299, 92.2041]];
 /// Slope of the confidence as a function of the cosine; `confidence_is_calibrated` fits it.
@@ -94,21 +97,14 @@ impl Learner for FaceRecognition {
     type State = ();
 
     fn load(model: &Model, params: FaceRecognitionParams, device: Device) -> Result<Self> {
-        let network = ImageNetwork::open(model, device, |input| {
-            let layout = if input.dims.last() == Some(&Some(3)) { Layout::Hwc } else { Layout::Chw };
-            Preprocess::new(SIDE, SIDE).layout(layout)
-        })?;
-        let [output] = network.outputs() else {
-            return Err(Error::format(
-                "a face recognition network needs one output, the embedding; load another model",
-            ));
-        };
-        let Some(dimension) = output.dims.last().copied().flatten().filter(|dimension| *dimension > 0) else {
-            return Err(Error::format(
-                "the embedding of a face recognition network needs a fixed length; load another model",
-            ));
-        };
-        let gallery = Gallery::of_model(model, dimension)?;
+        let network = EmbeddingNetwork::open(model, &params.input, device)?;
+        let [width, height] = network.size();
+        if width != height {
+            return Err(Error::format(format!(
+                "the network's input has {width} x {height} pixels; faces are aligned to a square; load another model"
+            )));
+        }
+        let gallery = Gallery::of_model(model, network.length())?;
         Ok(Self {
             finder: FaceDetector::open(model, params.face_threshold, device)?,
             persons: gallery.names(),
@@ -174,28 +170,22 @@ impl FaceRecognition {
         Ok(())
     }
 
-    /// Returns the crop of the aligned face; `None` when it has no extent.
-    fn crop(&self, image: &Image, face: &BoundingBox) -> Option<Similarity> {
+    /// Returns the crop of the aligned face of `side` pixels; `None` when it has no extent.
+    fn crop(&self, image: &Image, face: &BoundingBox, side: usize) -> Option<Similarity> {
         match self.params.input_kind {
-            FaceInput::Frame => Similarity::from_points(&face.landmarks, &TEMPLATE),
-            FaceInput::Face => Some(whole_image(image, SIDE)),
+            FaceInput::Frame => {
+                let template = TEMPLATE.map(|point| point.map(|value| value * side as f32 / SIDE as f32));
+                Similarity::from_points(&face.landmarks, &template)
+            }
+            FaceInput::Face => Some(whole_image(image, side)),
         }
     }
 
     /// Fills `embedding` with a face's embedding of length 1; returns `false` for a face without extent.
     fn embed(&self, image: &Image, face: &BoundingBox, embedding: &mut Vec<f32>) -> Result<bool> {
-        let Some(crop) = self.crop(image, face) else { return Ok(false) };
-        self.network.run_warped(
-            image,
-            &crop,
-            |_| {},
-            |outputs| {
-                embedding.clear();
-                embedding.extend_from_slice(outputs[0].values::<f32>()?);
-                Ok(())
-            },
-        )?;
-        Ok(normalise(embedding))
+        let [side, _] = self.network.size();
+        let Some(crop) = self.crop(image, face, side) else { return Ok(false) };
+        self.network.embed_crop(image, &crop, embedding)
     }
 
     fn name(&self, face: &mut BoundingBox, embedding: &[f32]) {

@@ -66,7 +66,7 @@ impl Collate for Collator {
             Some(finder) => {
                 let mut faces = BoundingBoxList::default();
                 finder.faces(image, &mut faces)?;
-                largest_face(&faces).and_then(|face| finder.crop(image, face))
+                largest_face(&faces).and_then(|face| finder.crop(image, face, SIDE))
             }
         };
         let crop = crop.ok_or_else(|| {

@@ -14,6 +14,7 @@ use opendr_engine::overlap::box_iou;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Name, TrackingAnnotationList};
 use opendr_engine::{Device, Result, Task};
+use opendr_perception_common::embedding_network::{EmbeddingInputParams, EmbeddingNetwork};
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 
 use super::TrackerInputs;
@@ -48,6 +49,9 @@ pub struct DeepSortParams {
     /// Whether only boxes of the same class match.
     #[param(default = true, live)]
     pub per_class: bool,
+    /// Input of the re-identification network.
+    #[param(flatten)]
+    pub input: EmbeddingInputParams,
 }
 
 /// A frame and its detections.
@@ -111,7 +115,8 @@ impl Learner for DeepSort {
     type State = DeepSortState;
 
     fn load(model: &Model, params: DeepSortParams, device: Device) -> Result<Self> {
-        Ok(Self { params, appearance: Appearance::open(model, device)? })
+        let network = EmbeddingNetwork::open(model, &params.input, device)?;
+        Ok(Self { params, appearance: Appearance(network) })
     }
 
     fn params(&self) -> &DeepSortParams {

@@ -1,13 +1,18 @@
 use opendr_engine::Random;
 use opendr_engine::model::Model;
 use opendr_engine::target::BoundingBox;
+use opendr_perception_common::exported_network::{InputColour, InputLevels};
 use opendr_perception_testing::test_models::{container, test_data};
 
 use super::*;
 
 fn tracker() -> Option<DeepSort> {
     let model = container("deep_sort", "person_reid/osnet_x0_25_msmt17.onnx", "")?;
-    Some(DeepSort::load(&Model::open(model).unwrap(), DeepSortParams::default(), Device::Cpu).unwrap())
+    let model = Model::open(model).unwrap();
+    let unstated = DeepSort::load(&model, DeepSortParams::default(), Device::Cpu).err().unwrap();
+    assert!(unstated.to_string().contains("set colour and levels"), "{unstated}");
+    let input = EmbeddingInputParams { colour: InputColour::Rgb, levels: InputLevels::ImageNet };
+    Some(DeepSort::load(&model, DeepSortParams { input, ..DeepSortParams::default() }, Device::Cpu).unwrap())
 }
 
 fn boxes(places: &[[f32; 4]]) -> BoundingBoxList {

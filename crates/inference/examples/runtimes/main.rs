@@ -4,29 +4,47 @@
 //! One line per file: medians of the times of a run in milliseconds, taking turns (with one thread, the time that the
 //! thread has computed, which other programs do not change much), their ratio, the largest difference of an output
 //! relative to its largest magnitude, and the times to open the model. ONNX Runtime is found as by the library
-//! (`ORT_DYLIB_PATH`). `runtimes layers FILE...` prints the nodes of models that take longest.
+//! (`ORT_DYLIB_PATH`). `runtimes memory FILE...` prints the peak memory of processes that open and run a model with
+//! one runtime, and their times to open it. With `--avx2` first, CPUID reports neither AVX-512 nor AMX to both sides.
+//! `runtimes layers FILE...` prints the nodes of models that take longest.
+
+mod cpuid;
+mod inputs;
+mod memory;
 
 use std::time::Instant;
 
-use opendr_engine::{Random, Result};
-use opendr_inference::{
-    Builtin, ElementType, OnnxRuntime, Runtime, Session, SessionOptions, TensorData, TensorInfo, TensorView,
-};
+use opendr_engine::{Error, Result};
+use opendr_inference::{Builtin, OnnxRuntime, Runtime, Session, SessionOptions, TensorData, TensorView};
+
+use inputs::Owned;
 
 const THREADS: [usize; 2] = [1, 2];
+/// Option that hides AVX-512 from both sides.
+const MASK: &str = "--avx2";
 
 fn main() -> Result<()> {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut arguments: Vec<String> = std::env::args().skip(1).collect();
+    let masks = arguments.first().is_some_and(|first| first == MASK);
+    if masks {
+        arguments.remove(0);
+        cpuid::mask_avx512()?;
+    }
     let [rounds, files @ ..] = arguments.as_slice() else {
-        eprintln!("usage: runtimes ROUNDS FILE...\n       runtimes layers FILE...");
+        eprintln!(
+            "usage: runtimes [{MASK}] ROUNDS FILE...\n       runtimes [{MASK}] memory FILE...\n       runtimes [{MASK}] layers FILE..."
+        );
         return Ok(());
     };
-    if rounds == "layers" {
-        return files.iter().try_for_each(|file| print_layers(file, &read(file)?));
+    match (rounds.as_str(), files) {
+        ("layers", _) => return files.iter().try_for_each(|file| print_layers(file, &read(file)?)),
+        ("memory", _) => return memory::print(files, masks),
+        (memory::PART, [side, file]) => return memory::print_part(side, &read(file)?),
+        _ => {}
     }
     let rounds = rounds.parse().unwrap_or(15_usize).max(1);
     let onnx_runtime = OnnxRuntime::find()?;
-    println!("# {}, {rounds} rounds", onnx_runtime.describe());
+    println!("# {}, {rounds} rounds, kernels: {}", onnx_runtime.describe(), opendr_kernels::Isa::best());
     print!("| model |");
     for threads in THREADS {
         print!(" built-in, {threads} thread(s) | ONNX Runtime | ratio |");
@@ -59,7 +77,7 @@ fn main() -> Result<()> {
 }
 
 fn read(file: &str) -> Result<Vec<u8>> {
-    std::fs::read(file).map_err(|error| opendr_engine::Error::internal(format!("{file}: {error}")))
+    std::fs::read(file).map_err(|error| Error::internal(format!("{file}: {error}")))
 }
 
 /// Returns the time that this thread has computed, or with several threads the time of day.
@@ -216,62 +234,5 @@ fn numbers(tensor: &TensorView<'_>) -> Vec<f64> {
         TensorData::I8(data) => data.iter().map(|&value| f64::from(value)).collect(),
         TensorData::Bool(data) => data.iter().map(|&value| f64::from(u8::from(value))).collect(),
         _ => Vec::new(),
-    }
-}
-
-enum Owned {
-    Floats(Vec<usize>, Vec<f32>),
-    Longs(Vec<usize>, Vec<i64>),
-    Ints(Vec<usize>, Vec<i32>),
-    Bytes(Vec<usize>, Vec<u8>),
-    SignedBytes(Vec<usize>, Vec<i8>),
-    Truths(Vec<usize>, Vec<bool>),
-}
-
-impl Owned {
-    /// Open dimensions have the size 256 where there is a height or width, else 8.
-    fn random(info: &TensorInfo) -> Self {
-        let open = |d: usize| match (info.dims.len(), d) {
-            (_, 0) => 1,
-            (4, _) => 256,
-            _ => 8,
-        };
-        let shape: Vec<usize> =
-            info.dims.iter().enumerate().map(|(d, dim)| dim.unwrap_or_else(|| open(d))).collect();
-        let count = shape.iter().product();
-        let mut random = Random::new(7);
-        match info.element_type {
-            ElementType::I64 => Self::Longs(shape, (0..count).map(|i| i as i64 % 7).collect()),
-            ElementType::I32 => Self::Ints(shape, (0..count).map(|i| i as i32 % 7).collect()),
-            ElementType::I8 => {
-                Self::SignedBytes(shape, (0..count).map(|i| (i * 37 % 251) as u8 as i8).collect())
-            }
-            ElementType::U8 => Self::Bytes(shape, (0..count).map(|i| (i * 37 % 251) as u8).collect()),
-            ElementType::Bool => Self::Truths(shape, (0..count).map(|i| i % 3 == 0).collect()),
-            _ => Self::Floats(shape, (0..count).map(|_| random.uniform(-1.0, 1.0)).collect()),
-        }
-    }
-
-    fn of_executor(&self) -> Option<opendr_executor::Tensor<'_>> {
-        use opendr_executor::{Data, Tensor};
-        match self {
-            Self::Floats(shape, data) => Some(Tensor { shape, data: Data::F32(data) }),
-            Self::Longs(shape, data) => Some(Tensor { shape, data: Data::I64(data) }),
-            Self::Ints(shape, data) => Some(Tensor { shape, data: Data::I32(data) }),
-            Self::Bytes(shape, data) => Some(Tensor { shape, data: Data::U8(data) }),
-            Self::SignedBytes(shape, data) => Some(Tensor { shape, data: Data::I8(data) }),
-            Self::Truths(..) => None,
-        }
-    }
-
-    fn view(&self) -> Result<TensorView<'_>> {
-        match self {
-            Self::Floats(shape, data) => TensorView::new(shape, data),
-            Self::Longs(shape, data) => TensorView::new(shape, data),
-            Self::Ints(shape, data) => TensorView::new(shape, data),
-            Self::Bytes(shape, data) => TensorView::new(shape, data),
-            Self::SignedBytes(shape, data) => TensorView::new(shape, data),
-            Self::Truths(shape, data) => TensorView::new(shape, data),
-        }
     }
 }
