@@ -120,10 +120,10 @@ fn preprocess(base: Preprocess, stated: &StatedInput, params: &EmbeddingInputPar
         InputColour::Rgb => Some(ChannelOrder::Rgb),
         InputColour::Bgr => Some(ChannelOrder::Bgr),
     };
-    let levels = params.levels.normalisation().or_else(|| {
-        let [mean, std] = stated.rgb_normalisation()?;
-        Some([mean, std])
-    });
+    let levels = match params.levels {
+        InputLevels::Auto => stated.rgb_normalisation(),
+        levels => Some(<[_; 2]>::from(levels.mean_and_std())),
+    };
     let missing = [("colour", order.is_none()), ("levels", levels.is_none())];
     let missing: Vec<&str> = missing.iter().filter(|(_, is)| *is).map(|(name, _)| *name).collect();
     let (Some(order), Some(levels)) = (order, levels) else {

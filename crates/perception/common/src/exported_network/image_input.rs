@@ -266,7 +266,7 @@ fn preprocess(image: &ImageInput, convention: &InputConvention) -> Preprocess {
         InputColour::Bgr => ChannelOrder::Bgr,
         InputColour::Auto | InputColour::Rgb => ChannelOrder::Rgb,
     };
-    let [mean, std] = convention.levels.normalisation().unwrap_or([[0.0; 3], [1.0; 3]]);
+    let (mean, std) = convention.levels.mean_and_std();
     let ordered = |mut values: [f32; 3]| {
         if order == ChannelOrder::Bgr {
             values.reverse();
