@@ -1,5 +1,5 @@
 //! Measures ACT, diffusion policy and behaviour cloning on the same demonstrations of an environment:
-//! `measure ENVIRONMENT PRIOR [demonstrations] [episodes] [steps] [seed]`.
+//! `measure ENVIRONMENT PRIOR [demonstrations] [episodes] [steps] [seed] [clone,act,diffusion]`.
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -47,19 +47,23 @@ fn main() -> Result<()> {
     println!("{} demonstrations, {} steps", set.episodes().len(), set.steps());
     let training = ChunkTrainingParams { training_steps: number(4, 10_000), seed, ..Default::default() };
     let measurement = Measurement { environment, set, training, protocol };
-    measurement.clone()?;
-    let mut diffusion = Vec::new();
-    for n_action_steps in [2, 3, 4, 8] {
-        for fixed_noise in [true, false] {
-            diffusion.push(DiffusionParams { n_action_steps, fixed_noise, ..Default::default() });
+    let methods = given.get(6).map_or("clone,act,diffusion", String::as_str);
+    if methods.contains("clone") {
+        measurement.clone()?;
+    }
+    if methods.contains("diffusion") {
+        let steps =
+            [1, 2, 4, 8].map(|n_action_steps| DiffusionParams { n_action_steps, ..Default::default() });
+        measurement.chunks::<DiffusionPolicy>(&steps)?;
+    }
+    if methods.contains("act") {
+        let mut act = vec![ActParams::default()];
+        for n_action_steps in [1, 4, 10] {
+            act.push(ActParams { temporal_ensemble: false, n_action_steps, ..Default::default() });
         }
+        measurement.chunks::<Act>(&act)?;
     }
-    measurement.chunks::<DiffusionPolicy>(&diffusion)?;
-    let mut act = vec![ActParams::default()];
-    for n_action_steps in [1, 2, 4, 10] {
-        act.push(ActParams { temporal_ensemble: false, n_action_steps, ..Default::default() });
-    }
-    measurement.chunks::<Act>(&act)
+    Ok(())
 }
 
 fn print(name: &str, report: &EvaluationReport) {

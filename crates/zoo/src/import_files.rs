@@ -182,6 +182,7 @@ mod tests {
                 manifest,
                 &[&network],
                 &named,
+                &[],
                 &ImportOptions::default(),
                 &folder.join("out"),
                 |_| Ok(()),

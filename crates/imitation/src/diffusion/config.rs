@@ -37,9 +37,6 @@ pub struct DiffusionParams {
     /// Actions of a prediction that are executed before the next one.
     #[param(default = 8, range = 1..=1000)]
     pub n_action_steps: usize,
-    /// Whether all predictions of an episode start from the same noise, so that they choose the same of several ways to the goal.
-    #[param(default = true)]
-    pub fixed_noise: bool,
     /// Seed of the noise, at the start of a stream.
     #[param(default = 0)]
     pub seed: u64,

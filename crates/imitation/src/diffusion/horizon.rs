@@ -15,8 +15,6 @@ pub struct DiffusionMemory {
     observations: Vec<f32>,
     /// `[horizon, action]`, scaled.
     chunk: Vec<f32>,
-    /// Noise that the predictions start from, of the shape of the chunk.
-    start: Vec<f32>,
     noise: Vec<f32>,
     /// Actions of the chunk that were executed.
     executed: usize,
@@ -41,11 +39,6 @@ impl DiffusionMemory {
         }
         let executable = params.n_action_steps.clamp(1, horizon + 1 - history);
         if begins || self.executed >= executable {
-            if begins || !params.fixed_noise {
-                let random = self.random.get_or_insert_with(|| Random::new(params.seed));
-                self.start.clear();
-                self.start.extend((0..horizon * step.action.len()).map(|_| random.normal() as f32));
-            }
             self.predict(policy, params, &step);
             self.executed = 0;
         }
@@ -55,10 +48,12 @@ impl DiffusionMemory {
         self.executed += 1;
     }
 
-    /// Removes the noise from the chunk that is noise alone.
+    /// Removes the noise from a random chunk.
     fn predict(&mut self, policy: &DiffusionPolicy, params: &DiffusionParams, step: &Acting<'_>) {
-        let Self { tape, observations, chunk, start, noise, .. } = self;
-        chunk.clone_from(start);
+        let Self { tape, observations, chunk, noise, random, .. } = self;
+        let random = random.get_or_insert_with(|| Random::new(params.seed));
+        chunk.clear();
+        chunk.extend((0..policy.config.horizon * step.action.len()).map(|_| random.normal() as f32));
         let mut levels = policy.schedule.sampled(params.num_inference_steps).peekable();
         while let Some(level) = levels.next() {
             let noisy = Noisy { observations, levels: &[level], chunks: chunk };
