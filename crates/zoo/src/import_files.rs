@@ -1,6 +1,6 @@
 //! Import of a user's model files, whose format is detected from their content.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::{Error, Result, ResultExt};
@@ -15,15 +15,17 @@ const MAX_BYTES: u64 = 1 << 31;
 /// Creates a container at `output` from a user's files, converted to ONNX: a model of TensorFlow Lite, TensorFlow.js (the JSON first,
 /// then the weights) or ncnn (the `.param` file first, then the weights), or Whisper weights of CTranslate2, in safetensors, or in
 /// two ONNX files exported by PyTorch (the encoder first). The format is detected from the content of the first file. Further
-/// files, such as a tokeniser, are copied; a single ONNX file becomes `model.onnx`. The container replaces `output` only if
-/// `check` accepts it, for example because the learner loads it.
+/// files, such as a tokeniser, are copied; a single ONNX file becomes `model.onnx`. Each of `named` is a name and a file, which is copied as
+/// the name with the file's extension: `("text", "clip_text.onnx")` becomes `text.onnx`. The container replaces `output` only if `check`
+/// accepts it, for example because the learner loads it.
 ///
 /// # Errors
-/// `NotFound` or `Io` for files that cannot be read, `Unsupported` for an unknown format, the error of an invalid file, and that
-/// of `check`. `output` is then unchanged.
+/// `NotFound` or `Io` for files that cannot be read, `Unsupported` for an unknown format, `InvalidInput` for a name that is none or taken, the
+/// error of an invalid file, and that of `check`. `output` is then unchanged.
 pub fn import_files(
     manifest: Manifest,
     files: &[impl AsRef<Path>],
+    named: &[(String, PathBuf)],
     options: &ImportOptions,
     output: &Path,
     check: impl FnOnce(&Model) -> Result<()>,
@@ -33,36 +35,60 @@ pub fn import_files(
         let path = path.as_ref();
         let name = path.file_name().and_then(|name| name.to_str());
         let name = name.ok_or_else(|| Error::invalid_input(format!("{} is not a file", path.display())))?;
-        let size = path.metadata().context(|| path.display().to_string())?.len();
-        if size > MAX_BYTES {
-            let mb = size >> 20;
-            return Err(Error::unsupported(format!(
-                "{} has {mb} MB; at most 2048 MB are supported",
-                path.display()
-            )));
-        }
-        given.push((name, std::fs::read(path).context(|| path.display().to_string())?));
+        given.push((name, read(path)?));
     }
-    let named: Vec<_> = given.iter().map(|(name, bytes)| (*name, bytes.as_slice())).collect();
-    let Some(&(first, bytes)) = named.first() else {
+    let given: Vec<_> = given.iter().map(|(name, bytes)| (*name, bytes.as_slice())).collect();
+    let Some(&(first, bytes)) = given.first() else {
         return Err(Error::invalid_input("no files to import; give at least one"));
     };
     let format = Format::of(first, bytes)?;
     let import = format.import(options);
-    let own = format.files(bytes)?.min(named.len());
+    let own = format.files(bytes)?.min(given.len());
     let mut writer = ModelWriter::new(output, manifest)?;
     match &import {
         Some(import) => {
-            for (name, made) in imported(import, &named[..own]).context(|| first.to_owned())? {
+            for (name, made) in imported(import, &given[..own]).context(|| first.to_owned())? {
                 writer.add(name, &made)?;
             }
         }
         None => writer.add("model.onnx", bytes)?,
     }
-    for (name, bytes) in &named[own..] {
+    for (name, bytes) in &given[own..] {
         writer.add(name, bytes)?;
     }
+    for (name, path) in named {
+        writer.add(&named_file(name, path)?, &read(path)?)?;
+    }
     writer.finish_checked(check)
+}
+
+fn read(path: &Path) -> Result<Vec<u8>> {
+    let context = || path.display().to_string();
+    let size = path.metadata().context(context)?.len();
+    if size > MAX_BYTES {
+        let mb = size >> 20;
+        return Err(Error::unsupported(format!(
+            "{} has {mb} MB; at most 2048 MB are supported",
+            path.display()
+        )));
+    }
+    std::fs::read(path).context(context)
+}
+
+/// Returns the name in the container of a file that the user named.
+fn named_file(name: &str, path: &Path) -> Result<String> {
+    let is_word = |text: &str| {
+        !text.is_empty() && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+    };
+    let extension = path.extension().and_then(|end| end.to_str()).map(str::to_lowercase);
+    match extension {
+        Some(extension) if is_word(name) && is_word(&extension) => Ok(format!("{name}.{extension}")),
+        _ => Err(Error::invalid_input(format!(
+            "{name}={} is no part of a model; the name has lower-case letters, digits and _, and the file an extension, such as \
+             text=text.onnx",
+            path.display()
+        ))),
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,6 +153,41 @@ impl Format {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn named_files_have_the_name_and_their_extension() {
+        let named = |name: &str, path: &str| named_file(name, Path::new(path));
+        assert_eq!(named("text", "a/clip.text.ONNX").unwrap(), "text.onnx");
+        for (name, path) in [("", "a.onnx"), ("../text", "a.onnx"), ("text", "a"), ("Text", "a.onnx")] {
+            assert!(named(name, path).is_err(), "{name} {path}");
+        }
+    }
+
+    #[test]
+    fn named_files_are_in_the_container() {
+        let folder = std::env::temp_dir().join(format!("opendr-import-parts-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let [network, part] = ["net.onnx", "words.JSON"].map(|name| folder.join(name));
+        std::fs::write(&network, b"network").unwrap();
+        std::fs::write(&part, b"{}").unwrap();
+        let import = |name: &str, path: &Path| {
+            let named = [(name.to_owned(), path.to_owned())];
+            let manifest = Manifest::new("learner", "");
+            import_files(
+                manifest,
+                &[&network],
+                &named,
+                &ImportOptions::default(),
+                &folder.join("out"),
+                |_| Ok(()),
+            )
+        };
+        let model = import("tokenizer", &part).unwrap();
+        assert_eq!(model.file("tokenizer.json").unwrap(), b"{}");
+        assert_eq!(model.file("model.onnx").unwrap(), b"network");
+        assert!(import("model", &network).is_err());
+        std::fs::remove_dir_all(folder).ok();
+    }
 
     #[test]
     fn format_is_detected_from_content() {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::learner::Entry;
 use opendr::model::Manifest;
 use opendr::params::ParamMap;
@@ -33,6 +33,14 @@ pub fn grammar() -> Command {
                 .value_parser(value_parser!(PathBuf))
                 .value_name("FILE")
                 .help("Model file first, then its further files: weights, a tokeniser"),
+        )
+        .arg(
+            Arg::new("part")
+                .long("part")
+                .action(ArgAction::Append)
+                .value_parser(named_file)
+                .value_name("NAME=FILE")
+                .help("Further file that the learner knows by a name, such as text=text.onnx; may be repeated"),
         )
         .arg(
             Arg::new("out")
@@ -87,7 +95,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     }
     let device = loading::device(matches)?;
     let mut recognised = Vec::new();
-    import_files(manifest, &files, &options, &output, |model| {
+    let parts: Vec<(String, PathBuf)> = matches.get_many("part").into_iter().flatten().cloned().collect();
+    import_files(manifest, &files, &parts, &options, &output, |model| {
         let loaded = entry.make(&params, device).and_then(|mut learner| {
             learner.load(model.path())?;
             recognised = settled_on_load(&learner.params(), &params, entry);
@@ -110,6 +119,13 @@ fn settled_on_load(loaded: &ParamMap, given: &ParamMap, entry: &Entry) -> Vec<St
         .filter(|(field, value)| field.default.value() != **value)
         .map(|(field, value)| format!("{} {value}", field.name.replace('_', "-")))
         .collect()
+}
+
+fn named_file(text: &str) -> Result<(String, PathBuf), String> {
+    match text.split_once('=') {
+        Some((name, file)) if !name.is_empty() && !file.is_empty() => Ok((name.to_owned(), file.into())),
+        _ => Err(format!("{text:?} is no part; write NAME=FILE, such as text=text.onnx")),
+    }
 }
 
 fn image_size(text: &str) -> Result<(usize, usize), String> {
