@@ -5,14 +5,12 @@ use opendr_engine::{Error, Pool, Result};
 use opendr_inference::{ElementType, Session, TensorInfo, TensorView};
 use opendr_vision::{ChannelOrder, InputGeometry, InputSample, LetterboxAlign, Preprocess, Warp};
 
-use super::{Facts, InputColour, InputConvention, InputLevels, InputResize};
+use super::{Facts, InputColour, InputConvention, InputResize};
 
 /// Maximum number of inputs of a network.
 const MAX_INPUTS: usize = 4;
 /// Maximum number of pixels of the network's input.
 const MAX_PIXELS: usize = 1 << 24;
-const IMAGENET_MEAN: [f32; 3] = [123.675, 116.28, 103.53];
-const IMAGENET_STD: [f32; 3] = [58.395, 57.12, 57.375];
 
 /// The image input of a network.
 #[derive(Debug, Clone, Copy)]
@@ -268,12 +266,7 @@ fn preprocess(image: &ImageInput, convention: &InputConvention) -> Preprocess {
         InputColour::Bgr => ChannelOrder::Bgr,
         InputColour::Auto | InputColour::Rgb => ChannelOrder::Rgb,
     };
-    let (mean, std) = match convention.levels {
-        InputLevels::Auto | InputLevels::Bytes => ([0.0; 3], [1.0; 3]),
-        InputLevels::Unit => ([0.0; 3], [255.0; 3]),
-        InputLevels::Signed => ([127.5; 3], [127.5; 3]),
-        InputLevels::ImageNet => (IMAGENET_MEAN, IMAGENET_STD),
-    };
+    let (mean, std) = convention.levels.mean_and_std();
     let ordered = |mut values: [f32; 3]| {
         if order == ChannelOrder::Bgr {
             values.reverse();
