@@ -11,7 +11,7 @@ use opendr_active::{ActiveFaceRecognition, ActiveObjectRecognition, ActivePoseRe
 #[cfg(feature = "classification")]
 use opendr_classification::{
     compressive_learning::MultilinearCompressive,
-    image_classification::{ImageClassifier, ImportedClassifier},
+    image_classification::{ImageClassifier, ImportedClassifier, ImportedZeroShotClassifier},
 };
 #[cfg(feature = "clouds")]
 use opendr_clouds::object_detection_3d::VoxelObjectDetection3d;
@@ -154,6 +154,7 @@ pub fn registry() -> &'static Registry {
             {
                 ImageClassifier,
                 ImportedClassifier,
+                ImportedZeroShotClassifier,
                 MultilinearCompressive,
             },
             #[cfg(feature = "segmentation")]

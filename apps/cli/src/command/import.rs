@@ -20,6 +20,7 @@ Examples:
   opendr import whisper model.bin tokenizer.json --out small             by CTranslate2
   opendr import detector yolo.onnx --out mine                             a detector of another tool, recognised
   opendr import face_recognition arcface.onnx --colour rgb --levels -1_1 --out mine   with the detector of the zoo's model
+  opendr import zero_shot_classifier vision.onnx --part text=text.onnx --part tokenizer=tokenizer.json --out clip
   opendr import LEARNER detector.tflite --classes names.txt --out mine
   opendr import LEARNER net.param net.bin --out mine                     from ncnn
   opendr infer whisper talk.wav --model small                          run the result";

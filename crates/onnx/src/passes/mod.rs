@@ -11,6 +11,7 @@ mod pad;
 mod prelu;
 mod rewriter;
 mod split;
+mod subgraph;
 mod transposed_conv;
 
 pub use constants::constants_to_initializers;
@@ -23,6 +24,7 @@ pub use identity::remove_identities;
 pub use pad::fold_padding;
 pub use prelu::prelu_to_conv;
 pub use rewriter::Rewriter;
+pub use subgraph::reduce_to_outputs;
 pub use transposed_conv::transposed_conv_to_conv;
 
 use super::proto::GraphProto;

@@ -4,6 +4,7 @@
 //!
 //! * Inputs: [`image_network`] (a session with fused pre-processing of one image), [`manifest_preprocess`] (pre-processing from
 //!   a model's manifest), [`exported_network`] (networks of other tools), [`clip_frames`], [`frame_features`] (features of skeletons).
+//! * Texts: [`byte_pairs`] (tokens of byte pair encodings).
 //! * Outputs: [`category_scores`] (categories from logits), [`suppression`] (non-maximum suppression),
 //!   [`boxes_from_candidates`], [`mask_runs`] (masks as run lengths), [`part_tree`] (PersonLab's decoder of poses), [`joints`], [`rotated_square`].
 //! * Second passes over parts of a large image: [`regions`].
@@ -31,6 +32,7 @@
 //! ```
 
 pub mod boxes_from_candidates;
+pub mod byte_pairs;
 pub mod category_scores;
 pub mod clip_frames;
 #[cfg(feature = "training")]

@@ -39,9 +39,16 @@ impl Facts {
     /// # Errors
     /// Those of [`Model::onnx`] and [`Session::open`].
     pub fn open(model: &Model, device: Device) -> Result<(Session, Self)> {
-        let onnx = model.onnx()?;
-        let session = Session::open(&onnx, device)?;
-        let facts = Self::new(&onnx, session.inputs().to_vec(), session.outputs().to_vec())?;
+        Self::open_network(&model.onnx()?, device)
+    }
+
+    /// Opens a network of a model of several and reads its facts.
+    ///
+    /// # Errors
+    /// Those of [`Session::open`].
+    pub fn open_network(onnx: &[u8], device: Device) -> Result<(Session, Self)> {
+        let session = Session::open(onnx, device)?;
+        let facts = Self::new(onnx, session.inputs().to_vec(), session.outputs().to_vec())?;
         Ok((session, facts))
     }
 
@@ -103,6 +110,13 @@ impl Facts {
     /// Returns whether the name of a tensor of weights contains `part`. Exporters of PyTorch name it by the module that it belongs to.
     pub fn has_weights_of(&self, part: &str) -> bool {
         self.weights.keys().any(|name| name.contains(part))
+    }
+
+    /// Returns the dimensions of the tensor of weights whose name contains `part`; `None` if several do, with other dimensions.
+    pub fn weight_dims(&self, part: &str) -> Option<&[i64]> {
+        let mut found = self.weights.iter().filter(|(name, _)| name.contains(part)).map(|(_, dims)| dims);
+        let dims = found.next()?;
+        found.all(|other| other == dims).then_some(dims)
     }
 
     /// Returns whether an operator named `kind` reads an input of the network.

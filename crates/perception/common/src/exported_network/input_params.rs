@@ -43,6 +43,27 @@ opendr_engine::choices! {
         Signed = "-1_1",
         /// Mean 0 and variance 1 over ImageNet.
         ImageNet = "imagenet",
+        /// Mean 0 and variance 1 over the images of CLIP's training.
+        Clip = "clip",
+    }
+}
+
+const IMAGENET_MEAN: [f32; 3] = [123.675, 116.28, 103.53];
+const IMAGENET_STD: [f32; 3] = [58.395, 57.12, 57.375];
+// Those of the original CLIP (Radford et al., "Learning Transferable Visual Models From Natural Language Supervision", ICML 2021), times 255.
+const CLIP_MEAN: [f32; 3] = [122.770_94, 116.746_01, 104.093_74];
+const CLIP_STD: [f32; 3] = [68.500_53, 66.632_19, 70.323_16];
+
+impl InputLevels {
+    /// Returns mean and standard deviation of red, green and blue, in levels of 0 to 255, by which samples are normalised.
+    pub const fn mean_and_std(self) -> ([f32; 3], [f32; 3]) {
+        match self {
+            Self::Auto | Self::Bytes => ([0.0; 3], [1.0; 3]),
+            Self::Unit => ([0.0; 3], [255.0; 3]),
+            Self::Signed => ([127.5; 3], [127.5; 3]),
+            Self::ImageNet => (IMAGENET_MEAN, IMAGENET_STD),
+            Self::Clip => (CLIP_MEAN, CLIP_STD),
+        }
     }
 }
 

@@ -6,6 +6,12 @@ use super::{Facts, ImageInput};
 
 /// Names of an output of depths, as exporters write them.
 const DEPTH_NAMES: [&str; 4] = ["predicted_depth", "depth", "pred_depth", "metric_depth"];
+/// Names of the output with the vector of an image that networks like CLIP compare with those of texts: those of transformers, `open_clip` and
+/// others.
+pub const IMAGE_EMBEDDINGS: &[&str] =
+    &["image_embeds", "image_features", "image_embeddings", "image_embedding"];
+/// Names of the output with the vector of a text.
+pub const TEXT_EMBEDDINGS: &[&str] = &["text_embeds", "text_features", "text_embeddings", "text_embedding"];
 /// Modules of networks whose only map are depths: the decoders of MiDaS and Depth Anything, also in transformers.
 const DEPTH_MODULES: [&str; 2] = ["scratch.output_conv", "neck.fusion_stage."];
 
@@ -20,6 +26,8 @@ pub enum NetworkKind {
     DepthEstimator,
     /// A map of one value for each pixel, which may be depths or a mask: nothing in the file distinguishes them.
     ValueMap,
+    /// A vector of the image that is compared with those of texts.
+    ZeroShotClassifier,
     /// Boxes with keypoints.
     PoseEstimator,
     /// Keypoints of the person that the image shows.
@@ -45,6 +53,7 @@ impl NetworkKind {
                 Self::TopDownPoseEstimator
             }
             _ if has_image_embeddings(facts) => Self::PromptableSegmenter,
+            _ if embedding_output(facts, IMAGE_EMBEDDINGS).is_some() => Self::ZeroShotClassifier,
             _ if facts.outputs.len() == 1 && facts.outputs.iter().all(is_class_scores) => Self::Classifier,
             _ if depth_output(facts).is_some() => Self::DepthEstimator,
             _ if is_segmenter(facts) => Self::Segmenter,
@@ -121,6 +130,15 @@ pub fn simcc_outputs(facts: &Facts) -> Option<([usize; 2], [usize; 3])> {
     };
     let ([keypoints, columns], [others, rows]) = (sides(x)?, sides(y)?);
     (keypoints == others).then_some(([x, y], [keypoints, columns, rows]))
+}
+
+/// Returns the index of the output with one vector that has one of `names`.
+pub fn embedding_output(facts: &Facts, names: &[&str]) -> Option<usize> {
+    let is_vector = |output: &TensorInfo| {
+        output.element_type == ElementType::F32
+            && matches!(output.dims[..], [batch, _] if batch.is_none_or(|batch| batch == 1))
+    };
+    facts.outputs.iter().position(|output| names.contains(&output.name.as_str()) && is_vector(output))
 }
 
 /// Returns the index of the output of heatmaps of keypoints, by the name that transformers gives it.

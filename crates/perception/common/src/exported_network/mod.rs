@@ -16,7 +16,7 @@ pub use facts::{Facts, is_integer, last_two, open_outputs};
 pub use image_input::{ExportedNetwork, ImageInput};
 pub use input_params::{InputColour, InputConvention, InputLevels, InputParams, InputResize};
 pub use kind::{
-    NetworkKind, depth_output, heatmaps, is_class_map, is_class_scores, is_value_map, named_heatmaps,
-    simcc_outputs,
+    IMAGE_EMBEDDINGS, NetworkKind, TEXT_EMBEDDINGS, depth_output, embedding_output, heatmaps, is_class_map,
+    is_class_scores, is_value_map, named_heatmaps, simcc_outputs,
 };
 pub use rows::{ClassScores, Rows, Selection, cells_of, decode_grid};

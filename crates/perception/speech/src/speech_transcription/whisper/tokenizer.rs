@@ -1,8 +1,9 @@
-//! Byte pair encoding over bytes, as in GPT-2 (Radford et al. 2019; Sennrich et al. 2016).
+//! Tokens of Whisper's texts.
 
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
+use opendr_perception_common::byte_pairs::{Merge, Merges, byte_of};
 use serde::Deserialize;
 
 use super::words::words_of;
@@ -17,8 +18,7 @@ const LONGEST: usize = 1 << 16;
 pub struct Tokenizer {
     bytes: Vec<Vec<u8>>,
     of_byte: [Option<u32>; 256],
-    /// Rank and resulting token of each mergeable pair.
-    merges_by_pair: HashMap<(u32, u32), (usize, u32)>,
+    merges: Merges,
     special: HashMap<String, u32>,
 }
 
@@ -39,23 +39,6 @@ struct AddedToken {
 struct Model {
     vocab: HashMap<String, u32>,
     merges: Vec<Merge>,
-}
-
-/// Merge in either notation of Hugging Face's file.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Merge {
-    Text(String),
-    Pair(String, String),
-}
-
-impl Merge {
-    fn pair(&self) -> Option<(&str, &str)> {
-        match self {
-            Self::Text(text) => text.split_once(' '),
-            Self::Pair(left, right) => Some((left, right)),
-        }
-    }
 }
 
 impl Tokenizer {
@@ -82,26 +65,14 @@ impl Tokenizer {
                 *place = spelled.unwrap_or_default();
             }
         }
-        let mut merges_by_pair = HashMap::new();
-        for (order, merge) in model.merges.iter().enumerate() {
-            let found = merge.pair().and_then(|(left, right)| {
-                let id = |text: &str| model.vocab.get(text).copied();
-                Some(((id(left)?, id(right)?), id(&format!("{left}{right}"))?))
-            });
-            let Some((pair, joined)) = found else {
-                return Err(Error::format(format!(
-                    "tokenizer.json: merge {order} is not a merge of two tokens"
-                )));
-            };
-            merges_by_pair.entry(pair).or_insert((order, joined));
-        }
+        let merges = Merges::new(&model.vocab, &model.merges)?;
         for token in &added_tokens {
             if let Some(place) = bytes.get_mut(token.id as usize) {
                 place.clear();
             }
         }
         let special = added_tokens.into_iter().map(|token| (token.content, token.id)).collect();
-        Ok(Self { bytes, of_byte, merges_by_pair, special })
+        Ok(Self { bytes, of_byte, merges, special })
     }
 
     /// Returns the number of tokens, including special ones.
@@ -149,47 +120,22 @@ impl Tokenizer {
             let ids: Option<Vec<u32>> = word.bytes().map(|byte| self.of_byte[usize::from(byte)]).collect();
             let ids =
                 ids.ok_or_else(|| Error::format("tokenizer.json lacks a token for at least one byte"))?;
-            tokens.extend(self.joined(ids));
+            tokens.extend(self.merges.joined(ids));
         }
         Ok(tokens)
-    }
-
-    /// Merges neighbours, always the pair of the lowest rank.
-    fn joined(&self, mut tokens: Vec<u32>) -> Vec<u32> {
-        loop {
-            let pairs = tokens.windows(2).enumerate().filter_map(|(at, pair)| match pair {
-                &[left, right] => {
-                    self.merges_by_pair.get(&(left, right)).map(|(order, joined)| (*order, at, *joined))
-                }
-                _ => None,
-            });
-            let Some((_, at, joined)) = pairs.min() else { return tokens };
-            tokens.splice(at..at + 2, [joined]);
-        }
-    }
-}
-
-/// Returns the byte of a character in the file: printable bytes are themselves, the others are U+0100 onwards, in order.
-fn byte_of(character: char) -> Option<u8> {
-    let itself = |byte: u8| matches!(byte, b'!'..=b'~' | 0xa1..=0xac | 0xae..=0xff);
-    match u8::try_from(character) {
-        Ok(byte) => Some(byte).filter(|byte| itself(*byte)),
-        Err(_) => {
-            let place = (character as usize).checked_sub(256)?;
-            (0..=255).filter(|byte| !itself(*byte)).nth(place)
-        }
     }
 }
 
 #[cfg(test)]
 pub mod tests {
+    use opendr_perception_common::byte_pairs::character_of;
+
     use super::*;
 
     /// Creates a vocabulary of the bytes, a few joins, and special tokens from 260 on.
     pub fn tiny(special: &[&str]) -> Tokenizer {
-        let spelled = |byte: u8| (0..=0x143).filter_map(char::from_u32).find(|c| byte_of(*c) == Some(byte));
         let mut vocab: serde_json::Map<String, serde_json::Value> =
-            (0..=255u8).map(|byte| (spelled(byte).unwrap().to_string(), byte.into())).collect();
+            (0..=255u8).map(|byte| (character_of(byte).to_string(), byte.into())).collect();
         for (id, text) in [(256, "he"), (257, "ll"), (258, "hell"), (259, "Ġhe")] {
             vocab.insert(text.to_owned(), id.into());
         }
@@ -203,17 +149,6 @@ pub mod tests {
             "model": {"vocab": vocab, "merges": ["h e", ["l", "l"], "he ll", "Ġ he"]}
         });
         Tokenizer::from_json(json.to_string().as_bytes()).unwrap()
-    }
-
-    #[test]
-    fn bytes_map_to_characters() {
-        assert_eq!(byte_of('Ġ'), Some(b' '));
-        assert_eq!(byte_of('Ċ'), Some(b'\n'));
-        assert_eq!(byte_of('a'), Some(b'a'));
-        assert_eq!([byte_of(' '), byte_of('\u{144}'), byte_of('€')], [None; 3]);
-        let all: std::collections::HashSet<u8> =
-            (0..0x144).filter_map(char::from_u32).filter_map(byte_of).collect();
-        assert_eq!(all.len(), 256);
     }
 
     #[test]
