@@ -105,7 +105,7 @@ def prompt(mask, iou, points=None, labels=None, box=None):
 
 def export_decoder(model, name, inputs, outputs, axes):
     torch.onnx.export(
-        model, tuple(inputs.values()), name, input_names=list(inputs), output_names=outputs, dynamic_axes=axes, opset_version=17, dynamo=False
+        model.eval(), tuple(inputs.values()), name, input_names=list(inputs), output_names=outputs, dynamic_axes=axes, opset_version=17, dynamo=False
     )
 
 

@@ -123,8 +123,9 @@ impl Learner for ImportedPromptableSegmenter {
             for given in boxes {
                 let Some(corners) = Prompt::of_box(given) else { continue };
                 let Some(masked) = self.decode(encoded, &corners, prompt, upsampling)? else { continue };
-                let BoundingBox { confidence, segment, .. } = masked;
-                found.boxes.push(BoundingBox { confidence, segment, ..given.clone() });
+                let BoundingBox { left, top, width, height, .. } = *given;
+                let (name, landmarks) = (given.name.clone(), given.landmarks.clone());
+                found.boxes.push(BoundingBox { name, left, top, width, height, landmarks, ..masked });
             }
             Ok(())
         })
