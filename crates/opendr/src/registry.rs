@@ -64,7 +64,7 @@ use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 #[cfg(feature = "segmentation")]
 use opendr_segmentation::{
     binary_high_resolution::HighResolutionPatches,
-    instance_segmentation::BodyPix,
+    instance_segmentation::{BodyPix, ImportedPromptableSegmenter},
     semantic_segmentation::{Bisenet, Deeplab, ImportedSegmenter, SelfieSegmentation, TiledSegmentation},
 };
 #[cfg(feature = "signals")]
@@ -165,6 +165,7 @@ pub fn registry() -> &'static Registry {
                 SelfieSegmentation,
                 TiledSegmentation,
                 BodyPix,
+                ImportedPromptableSegmenter,
                 HighResolutionPatches,
             },
             #[cfg(feature = "panoptic")]

@@ -1,4 +1,4 @@
-//! Resizing of height and width.
+//! Resizing of height and width, or of a length.
 
 use opendr_engine::Result;
 use opendr_onnx::proto::NodeProto;
@@ -16,16 +16,16 @@ pub(crate) fn resize(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
         return Err(node.refused("its input"));
     }
     if node.text("mode", "nearest") == "cubic" {
-        let Axes { shape, positions: [rows, columns] } = Axes::new(planner, node, inputs)?;
-        let rows = Cubic::of_axis(node, &rows, dims[2])?;
-        let columns = Cubic::of_axis(node, &columns, dims[3])?;
+        let Axes { shape, input, positions: [rows, columns] } = Axes::new(planner, node, inputs)?;
+        let rows = Cubic::of_axis(node, &rows, input[0])?;
+        let columns = Cubic::of_axis(node, &columns, input[1])?;
         let x = planner.channels_last(x)?;
-        let step = CubicStep(Lines { rows, columns, input: [dims[2], dims[3]], channels: dims[1] });
+        let step = CubicStep(Lines { rows, columns, input, channels: dims[1] });
         return Ok(vec![planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?]);
     }
-    let Geometry { shape, rows, columns, is_linear } = Geometry::new(planner, node, inputs)?;
+    let Geometry { shape, input, rows, columns, is_linear } = Geometry::new(planner, node, inputs)?;
     let x = planner.channels_last(x)?;
-    let lines = Lines { rows, columns, input: [dims[2], dims[3]], channels: dims[1] };
+    let lines = Lines { rows, columns, input, channels: dims[1] };
     let step = ResizeStep { lines, is_linear };
     Ok(vec![planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?])
 }
@@ -35,17 +35,19 @@ fn is_old(planner: &Planner<'_>, node: &NodeProto) -> bool {
     planner.graph.opset < 11 || node.op_type == "Upsample"
 }
 
-/// Shape of the output, and the positions of its rows and columns in the input.
+/// Shape of the output, number of rows and columns of the input, and the positions in it of those of the output. A sequence
+/// `[batch, channels, length]` is an image of one row.
 struct Axes {
     shape: Vec<usize>,
+    input: [usize; 2],
     positions: [Vec<f64>; 2],
 }
 
 impl Axes {
     fn new(planner: &Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Self> {
         let dims = planner.shape(required(node, inputs, 0)?);
-        let old = is_old(planner, node);
-        if dims.len() != 4 || node.find("axes").is_some() || node.int_or("antialias", 0) != 0 {
+        let (rank, old) = (dims.len(), is_old(planner, node));
+        if !(3..=4).contains(&rank) || node.find("axes").is_some() || node.int_or("antialias", 0) != 0 {
             return Err(node.refused("its input, axes, or antialiasing"));
         }
         if node.text("keep_aspect_ratio_policy", "stretch") != "stretch" {
@@ -60,7 +62,7 @@ impl Axes {
         let scales = scales.as_ref().and_then(|scales| scales.floats()).or(attribute);
         let scales = scales.filter(|scales| !scales.is_empty());
         let (shape, scales): (Vec<usize>, Vec<f64>) = match (scales, optional(inputs, 3)) {
-            (Some(scales), _) if scales.len() == 4 => {
+            (Some(scales), _) if scales.len() == rank => {
                 let sizes = dims.iter().zip(scales).map(|(&dim, &scale)| {
                     let size = (dim as f64 * f64::from(scale)).floor();
                     ((0.0..16_777_216.0).contains(&size)).then_some(size as usize)
@@ -71,18 +73,18 @@ impl Axes {
             }
             (None, Some(sizes)) => {
                 let sizes = super::movement::sizes(node, &planner.ints(node, sizes)?)?;
-                if sizes.len() != 4 {
-                    return Err(node.damaged("four sizes"));
+                if sizes.len() != rank {
+                    return Err(node.damaged(&format!("{} sizes for {rank} dimensions", sizes.len())));
                 }
                 let scales =
                     sizes.iter().zip(&dims).map(|(&size, &dim)| size as f64 / dim.max(1) as f64).collect();
                 (sizes, scales)
             }
-            _ => return Err(node.damaged("neither four scales nor sizes")),
+            _ => return Err(node.damaged("neither a scale nor a size for each dimension")),
         };
         count(&shape)?;
         if shape[..2] != dims[..2] || dims.contains(&0) {
-            return Err(node.refused("other dimensions than height and width"));
+            return Err(node.refused("other dimensions than height and width, or the length"));
         }
         let place =
             node.text("coordinate_transformation_mode", if old { "asymmetric" } else { "half_pixel" });
@@ -104,14 +106,17 @@ impl Axes {
             let positions: Option<Vec<f64>> = (0..output).map(|i| Some(f64::from(at(i)? as f32))).collect();
             positions.ok_or_else(|| node.refused(&format!("mode {place:?}")))
         };
-        let positions = [positions(2)?, positions(3)?];
-        Ok(Self { shape, positions })
+        let columns = positions(rank - 1)?;
+        let (rows, height) = if rank == 4 { (positions(2)?, dims[2]) } else { (vec![0.0], 1) };
+        Ok(Self { shape, input: [height, dims[rank - 1]], positions: [rows, columns] })
     }
 }
 
 /// Shape of the output, and what each row and column of it is made of.
 pub(crate) struct Geometry {
     pub(crate) shape: Vec<usize>,
+    /// Number of rows and columns of the input.
+    pub(crate) input: [usize; 2],
     pub(crate) rows: Vec<Point>,
     pub(crate) columns: Vec<Point>,
     pub(crate) is_linear: bool,
@@ -119,8 +124,7 @@ pub(crate) struct Geometry {
 
 impl Geometry {
     pub(crate) fn new(planner: &Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Self> {
-        let Axes { shape, positions: [rows, columns] } = Axes::new(planner, node, inputs)?;
-        let dims = planner.shape(required(node, inputs, 0)?);
+        let Axes { shape, input, positions: [rows, columns] } = Axes::new(planner, node, inputs)?;
         let mode = node.text("mode", "nearest");
         // The name of two dimensions in the first `Upsample`.
         let mode = if mode == "bilinear" { "linear".to_owned() } else { mode };
@@ -150,8 +154,8 @@ impl Geometry {
             let points: Option<Vec<Point>> = points.collect();
             points.ok_or_else(|| node.refused(&format!("nearest mode {rounding:?}")))
         };
-        let (rows, columns) = (points(&rows, dims[2])?, points(&columns, dims[3])?);
-        Ok(Self { shape, rows, columns, is_linear: mode == "linear" })
+        let (rows, columns) = (points(&rows, input[0])?, points(&columns, input[1])?);
+        Ok(Self { shape, input, rows, columns, is_linear: mode == "linear" })
     }
 }
 

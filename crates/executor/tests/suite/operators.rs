@@ -211,3 +211,43 @@ fn a_short_row_is_added_to_all_rows() {
         }
     }
 }
+
+/// The values are those of `torch.nn.functional.interpolate` with `mode="linear"` and `"nearest"`.
+#[test]
+fn a_sequence_is_resized_along_its_length() {
+    let x = [0.0, 1.0, 4.0, 9.0, -2.0, 0.0, 2.0, 8.0];
+    let resized = |mode: &str, size: i64, scale: Option<f32>| {
+        let mut graph = Builder::default();
+        let dims = vec![Some(1), Some(2), Some(4)];
+        let input = graph.input("x", ElementType::Float, dims, &[]);
+        let none = constant(vec![0], &[]);
+        let shape = vec![Some(1), Some(2), Some(size as usize)];
+        let place = if mode == "nearest" { "asymmetric" } else { "half_pixel" };
+        let resize = Operator::new("Resize").text("mode", mode).text("nearest_mode", "floor");
+        let resize = resize.text("coordinate_transformation_mode", place);
+        let y = match scale {
+            Some(scale) => {
+                let scales = constant(vec![3], &[1.0, 1.0, scale]);
+                graph.add("y", resize, &[&input, &none, &scales], ElementType::Float, shape)
+            }
+            None => {
+                let sizes = GraphTensor::ints([1, 2, size]);
+                graph.add("y", resize, &[&input, &none, &none, &sizes], ElementType::Float, shape)
+            }
+        };
+        graph.output("y", &y.unwrap(), "", &[]).unwrap();
+        let model = bytes_from_model(&model_from_graph(graph.finish("resize")));
+        let mut executor = Executor::open(&model, Compute::single()).unwrap();
+        outputs(&mut executor, &[1, 2, 4], &x).remove(0)
+    };
+    assert_eq!(resized("linear", 4, None), x);
+    let longer = [0.0, 0.5, 1.5, 3.5, 6.5, 9.0, -2.0, -1.0, 1.0 / 3.0, 5.0 / 3.0, 5.0, 8.0];
+    let close = |found: &[f32], wanted: &[f32]| {
+        found.len() == wanted.len()
+            && found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-5)
+    };
+    assert!(close(&resized("linear", 6, None), &longer));
+    assert!(close(&resized("linear", 2, Some(0.5)), &[0.5, 6.5, -1.0, 5.0]));
+    let doubled = [0.0, 0.0, 1.0, 1.0, 4.0, 4.0, 9.0, 9.0, -2.0, -2.0, 0.0, 0.0, 2.0, 2.0, 8.0, 8.0];
+    assert_eq!(resized("nearest", 8, Some(2.0)), doubled);
+}

@@ -12,12 +12,23 @@ use opendr_onnx::{Array, Data, FloatType, model_from_bytes};
 use super::sizes::PLACES;
 use super::{WhisperOnnx, WhisperWeights, onnx_from_whisper};
 
-/// A name that every exported encoder contains, and no encoder built here.
+/// A name that every exported encoder contains, and no encoder built here. Networks of images with attention have it too.
 const MARK: &[u8] = b"/self_attn/q_proj/MatMul";
 
-/// Returns whether a file is, by a name in it, one of the networks of a Whisper that PyTorch exported.
+/// Returns whether a file is one of the networks of a Whisper that PyTorch exported, by a name in it and because it has no convolution of
+/// images.
 pub fn is_exported_whisper(model: &[u8]) -> bool {
-    model.windows(MARK.len()).any(|bytes| bytes == MARK)
+    model.windows(MARK.len()).any(|bytes| bytes == MARK) && !has_image_convolution(model)
+}
+
+fn has_image_convolution(model: &[u8]) -> bool {
+    let is_of_images = |node: &NodeProto| {
+        let kernel = node.attribute.iter().find(|attribute| attribute.name == "kernel_shape");
+        ["Conv", "ConvTranspose"].contains(&node.op_type.as_str())
+            && kernel.is_some_and(|kernel| kernel.ints.len() == 2)
+    };
+    let graph = model_from_bytes(model).ok().and_then(|model| model.graph);
+    graph.is_some_and(|graph| graph.node.iter().any(is_of_images))
 }
 
 /// Converts the `encoder_model.onnx` and `decoder_model.onnx` of a Whisper that PyTorch exported, e.g. with Hugging

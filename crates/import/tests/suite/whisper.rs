@@ -288,6 +288,15 @@ fn exported_networks_give_the_same_ones() {
 }
 
 #[test]
+fn networks_of_images_with_attention_are_no_whisper() {
+    let mut model = opendr_onnx::model_from_bytes(&tiny_exported("encoder", "", 0)).unwrap();
+    let kernel = AttributeProto { name: "kernel_shape".into(), ints: vec![16, 16], ..Default::default() };
+    let patches = NodeProto { op_type: "Conv".into(), attribute: vec![kernel], ..Default::default() };
+    model.graph.as_mut().unwrap().node.insert(0, patches);
+    assert!(!is_exported_whisper(&bytes_from_model(&model)));
+}
+
+#[test]
 fn other_and_damaged_networks_are_refused() {
     let (encoder, decoder) = (tiny_exported("encoder", "", 0), tiny_exported("decoder", "model.decoder.", 1));
     assert!(whisper_from_onnx(&decoder, &encoder).is_err());

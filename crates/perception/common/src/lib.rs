@@ -6,7 +6,7 @@
 //!   a model's manifest), [`exported_network`] (networks of other tools), [`clip_frames`], [`frame_features`] (features of skeletons).
 //! * Texts: [`byte_pairs`] (tokens of byte pair encodings).
 //! * Outputs: [`category_scores`] (categories from logits), [`suppression`] (non-maximum suppression),
-//!   [`boxes_from_candidates`], [`part_tree`] (PersonLab's decoder of poses), [`joints`], [`rotated_square`].
+//!   [`boxes_from_candidates`], [`mask_runs`] (masks as run lengths), [`part_tree`] (PersonLab's decoder of poses), [`joints`], [`rotated_square`].
 //! * Second passes over parts of a large image: [`regions`].
 //! * Training, with the feature `training`: [`labelled`], [`trainable_weights`], [`frozen_layers`], [`dynamic_sides`],
 //!   [`small_backbone`] and [`small_classifier`]; [`progressive`] (networks that grow).
@@ -46,6 +46,7 @@ pub mod joints;
 #[cfg(feature = "training")]
 pub mod labelled;
 pub mod manifest_preprocess;
+pub mod mask_runs;
 pub mod part_tree;
 pub mod progressive;
 pub mod regions;

@@ -26,12 +26,12 @@ pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto) -> Result<Optio
     let fixed = |points: &[([usize; 2], f32)]| {
         points.iter().map(|&(at, weight)| (at, (weight * 1024.0) as i32)).collect::<Vec<_>>()
     };
-    let dims = planner.shape(x.bytes);
+    let channels = planner.shape(x.bytes)[1];
     let step = ResizeStep(ByteResize {
         rows: fixed(&geometry.rows),
         columns: fixed(&geometry.columns),
-        input: [dims[2], dims[3]],
-        channels: dims[1],
+        input: geometry.input,
+        channels,
         zero: x.zero,
     });
     let bytes = planner.channels_last(x.bytes)?;

@@ -6,8 +6,8 @@ use opendr_engine::model::Model;
 use opendr_engine::target::Classes;
 use opendr_engine::{Device, Error, Result};
 use opendr_inference::{ElementType, Session, TensorInfo, declared_tensors};
-use opendr_onnx::model_from_bytes;
 use opendr_onnx::proto::{GraphProto, NodeProto};
+use opendr_onnx::{bytes_from_model, model_from_bytes, passes};
 
 use super::class_names;
 
@@ -196,6 +196,19 @@ impl Facts {
         };
         format!("inputs {}; outputs {}", list(&self.inputs), list(&self.outputs))
     }
+}
+
+/// Opens a network of which only the outputs with these names are computed.
+///
+/// # Errors
+/// `Format` when the bytes are not an ONNX model; those of [`Session::open`].
+pub fn open_outputs(onnx: &[u8], names: &[&str], device: Device) -> Result<Session> {
+    let mut model = model_from_bytes(onnx)?;
+    if let Some(graph) = &mut model.graph {
+        graph.output.retain(|output| names.contains(&output.name.as_str()));
+        passes::remove_dead_nodes(graph);
+    }
+    Session::open(&bytes_from_model(&model), device)
 }
 
 /// Returns the last two dimensions of a tensor of floats with at least `rank` dimensions.

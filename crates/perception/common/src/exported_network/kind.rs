@@ -32,6 +32,8 @@ pub enum NetworkKind {
     PoseEstimator,
     /// Keypoints of the person that the image shows.
     TopDownPoseEstimator,
+    /// One of the two networks of promptable segmentation: the encoder of an image, or the decoder of prompts.
+    PromptableSegmenter,
     /// Boxes; also what is not recognised, since a detector's error names what is to be set.
     Detector,
 }
@@ -51,6 +53,7 @@ impl NetworkKind {
                 Self::TopDownPoseEstimator
             }
             _ if embedding_output(facts, IMAGE_EMBEDDINGS).is_some() => Self::ZeroShotClassifier,
+            _ if has_image_embeddings(facts) => Self::PromptableSegmenter,
             _ if facts.outputs.len() == 1 && facts.outputs.iter().all(is_class_scores) => Self::Classifier,
             _ if depth_output(facts).is_some() => Self::DepthEstimator,
             _ if is_segmenter(facts) => Self::Segmenter,
@@ -109,6 +112,12 @@ fn value_map_sides(output: &TensorInfo) -> Option<[Option<usize>; 2]> {
     };
     let is_map = output.element_type == ElementType::F32 && is_one(&batch);
     (is_map && is_side(height) && is_side(width)).then_some([height, width])
+}
+
+/// Returns whether a network returns or takes the map of an image's embeddings, by the name that Segment Anything and its variants give it.
+fn has_image_embeddings(facts: &Facts) -> bool {
+    let is_map = |tensor: &TensorInfo| tensor.name == "image_embeddings" && tensor.dims.len() == 4;
+    facts.inputs.iter().chain(&facts.outputs).any(is_map)
 }
 
 /// Returns the outputs with the scores of columns and of rows of keypoints (`SimCC`, as MMDeploy exports `RTMPose`), and the numbers of

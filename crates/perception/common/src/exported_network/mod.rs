@@ -12,7 +12,7 @@ mod kind;
 mod rows;
 
 pub use class_names::class_names;
-pub use facts::{Facts, is_integer, last_two};
+pub use facts::{Facts, is_integer, last_two, open_outputs};
 pub use image_input::{ExportedNetwork, ImageInput};
 pub use input_params::{InputColour, InputConvention, InputLevels, InputParams, InputResize};
 pub use kind::{

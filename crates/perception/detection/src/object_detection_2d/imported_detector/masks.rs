@@ -4,9 +4,10 @@
 //! coefficients of a detection. They are cut to the part of the prototypes that shows the image, scaled bilinearly to the size of the image, and
 //! cut to the box.
 
-use opendr_engine::target::{Rle, Segment, Segmentation};
+use opendr_engine::target::Segment;
 use opendr_engine::{Error, Result};
 use opendr_inference::TensorView;
+use opendr_perception_common::mask_runs::MaskRuns;
 use opendr_vision::InputGeometry;
 
 /// Prototypes `[channels, height, width]` of one image.
@@ -93,7 +94,7 @@ impl<'a> Prototypes<'a> {
                 logits.iter_mut().zip(prototype).for_each(|(logit, value)| *logit += weight * value);
             }
         }
-        let mut runs = Runs::default();
+        let mut runs = MaskRuns::default();
         for x in columns.first..columns.end {
             let (at, share) = columns.position(x);
             let next = (at + 1).min(columns.samples - 1);
@@ -108,12 +109,7 @@ impl<'a> Prototypes<'a> {
                 }
             }
         }
-        let area = runs.area as f32;
-        let side = |side: usize| {
-            u32::try_from(side).map_err(|_| Error::format(format!("an image of {side} pixels has no masks")))
-        };
-        let rle = Rle::new(side(image[1])?, side(image[0])?, runs.finish(image[0] * image[1]))?;
-        Ok(Segment { segmentation: Segmentation::Rle(rle), area, iscrowd: false })
+        runs.finish(image)
     }
 }
 
@@ -147,39 +143,10 @@ impl Axis {
     }
 }
 
-/// Run lengths of pixels that are set in ascending order.
-#[derive(Default)]
-struct Runs {
-    counts: Vec<u32>,
-    end: usize,
-    area: u64,
-}
-
-impl Runs {
-    fn set(&mut self, pixel: usize) {
-        self.area += 1;
-        match self.counts.last_mut() {
-            // The last run is one of set pixels.
-            Some(run) if self.end == pixel => *run += 1,
-            _ => {
-                self.counts.push((pixel - self.end) as u32);
-                self.counts.push(1);
-            }
-        }
-        self.end = pixel + 1;
-    }
-
-    fn finish(mut self, pixels: usize) -> Vec<u32> {
-        if self.end < pixels {
-            self.counts.push((pixels - self.end) as u32);
-        }
-        self.counts
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use opendr_engine::target::Segmentation;
 
     /// Two prototypes of 4x4: one rises from left to right, one is 1 everywhere.
     fn prototypes() -> [f32; 32] {
