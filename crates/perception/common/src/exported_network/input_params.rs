@@ -67,21 +67,6 @@ impl InputLevels {
     }
 }
 
-const IMAGENET_MEAN: [f32; 3] = [123.675, 116.28, 103.53];
-const IMAGENET_STD: [f32; 3] = [58.395, 57.12, 57.375];
-
-impl InputLevels {
-    /// Returns mean and standard deviation of red, green and blue, in levels of 0 to 255, by which samples are normalised.
-    pub const fn mean_and_std(self) -> ([f32; 3], [f32; 3]) {
-        match self {
-            Self::Auto | Self::Bytes => ([0.0; 3], [1.0; 3]),
-            Self::Unit => ([0.0; 3], [255.0; 3]),
-            Self::Signed => ([127.5; 3], [127.5; 3]),
-            Self::ImageNet => (IMAGENET_MEAN, IMAGENET_STD),
-        }
-    }
-}
-
 /// Parameters of a network's image input.
 #[derive(Debug, Clone, Params)]
 pub struct InputParams {

@@ -52,8 +52,8 @@ impl NetworkKind {
             _ if simcc_outputs(facts).is_some() || named_heatmaps(facts).is_some() => {
                 Self::TopDownPoseEstimator
             }
-            _ if has_image_embeddings(facts) => Self::PromptableSegmenter,
             _ if embedding_output(facts, IMAGE_EMBEDDINGS).is_some() => Self::ZeroShotClassifier,
+            _ if has_image_embeddings(facts) => Self::PromptableSegmenter,
             _ if facts.outputs.len() == 1 && facts.outputs.iter().all(is_class_scores) => Self::Classifier,
             _ if depth_output(facts).is_some() => Self::DepthEstimator,
             _ if is_segmenter(facts) => Self::Segmenter,
