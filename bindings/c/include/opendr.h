@@ -1283,7 +1283,7 @@ static inline opendr_status opendr_infer_fastest_det(const opendr_learner *learn
  *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
- *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, clip, default auto): Range of the samples of the network's input.
  *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
  *
  * Inputs:
@@ -1699,6 +1699,8 @@ static inline opendr_status opendr_infer_c_biou(const opendr_learner *learner,
  *   n_init (an int 1..=100, live, default 3): Number of detections in a row that confirm a track; in the first frames of a stream, one.
  *   nn_budget (an int 1..=200, live, default 100): Number of embeddings that are stored per track.
  *   per_class (a bool, live, default true): Whether only boxes of the same class match.
+ *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input; `auto` is that of the model's manifest.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, clip, default auto): Range of the samples of the network's input; `auto` is that of the model's manifest.
  *
  * Inputs:
  *   image (Image): Frame.
@@ -1969,6 +1971,8 @@ static inline opendr_status opendr_infer_yunet(const opendr_learner *learner,
  *   threshold (a float -1..=1, live, default 0.38): Cosine to every image of a known person below which a face is unknown.
  *   face_threshold (a float 0..=1, default 0.6): Score of the detector below which faces are dropped.
  *   input_kind (a str, one of frame, face, live, default frame): Content of the images.
+ *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input; `auto` is that of the model's manifest.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, clip, default auto): Range of the samples of the network's input; `auto` is that of the model's manifest.
  *
  * Inputs:
  *   image (Image)
@@ -2316,7 +2320,7 @@ static inline opendr_status opendr_infer_blazepose(const opendr_learner *learner
  *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
- *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, clip, default auto): Range of the samples of the network's input.
  *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
  *
  * Inputs:
@@ -2358,7 +2362,7 @@ static inline opendr_status opendr_infer_pose_estimator(const opendr_learner *le
  *   layout (a str, one of auto, simcc, heatmaps, udp_heatmaps, default auto): What the outputs are.
  *   skeleton (a str, one of auto, coco17, blazepose33, left_hand21, right_hand21, points, default auto): Skeleton of the keypoints.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
- *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, clip, default auto): Range of the samples of the network's input.
  *   size (an int 32..=4096 px, default none): Side of the network's input in pixels, for models of dynamic size.
  *
  * Inputs:
@@ -2585,7 +2589,7 @@ static inline opendr_status opendr_infer_image_classifier(const opendr_learner *
  *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
- *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, clip, default auto): Range of the samples of the network's input.
  *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
  *
  * Inputs:
@@ -2600,6 +2604,51 @@ static inline opendr_status opendr_load_classifier(const char *path, const char 
 }
 
 static inline opendr_status opendr_infer_classifier(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ImportedZeroShotClassifierLearner: Classifies images by texts with your own CLIP, exported to ONNX by another tool; no training.
+ *
+ * Parameters:
+ *   labels (a str, live, default ): Classes as texts, separated by semicolons, or by commas if there is no semicolon: `cat; dog; empty room`. The classes of the model if empty.
+ *   template (a str, live, default a photo of a {}): Text that is compared with the image, with `{}` in place of the class.
+ *   logit_scale (a float 0.001..=10000, live, default none): Factor on the cosine similarities of image and texts before the softmax. Read from the network if absent; 100, as that of the original CLIP, if it has none.
+ *   probabilities (a bool, live, default true): Whether the prediction has the probability of every class.
+ *   context_length (an int 3..=1024, default none): Number of tokens of a text, with padding. Recognised from the text network if absent; 77 if it does not state it.
+ *   image_output (a str, default none): Name of the output with the vector of the image; recognised if absent.
+ *   text_output (a str, default none): Name of the output with the vector of the text; recognised if absent.
+ *   crop (a float 0..=1, default none): Share of the image's shorter side that its central crop keeps, which has the aspect ratio of the network's input; 0 for the whole image. Recognised from the network if absent.
+ *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
+ *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
+ *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, clip, default auto): Range of the samples of the network's input.
+ *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_zero_shot_classifier(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("zero_shot_classifier", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_zero_shot_classifier(const opendr_learner *learner,
     const opendr_image *image,
     opendr_category **category) {
     opendr_input inputs_[1];
@@ -2694,7 +2743,7 @@ static inline opendr_status opendr_infer_deeplab(const opendr_learner *learner,
  *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
- *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, clip, default auto): Range of the samples of the network's input.
  *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
  *
  * Inputs:
@@ -2867,6 +2916,48 @@ static inline opendr_status opendr_infer_bodypix(const opendr_learner *learner,
     outputs_[0].name = "boxes";
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ImportedPromptableSegmenterLearner: Runs Segment Anything and its small variants, exported to ONNX by another tool, on points or the boxes of a detector.
+ *
+ * Parameters:
+ *   points (a str, live, default ): Points of one object, in pixels of the image: `x,y` or `x,y,label` each, separated by semicolons, e.g. `320,240;100,80,0`. The label is 1 for a point on the object, as without a label, and 0 for one outside.
+ *   quality_threshold (a float 0..=1, live, default 0): Predicted IoU below which masks are dropped.
+ *   mask_threshold (a float -50..=50, live, default 0): Logit above which pixels belong to the mask.
+ *   multimask (a str, one of auto, best, single, default auto): Which of the masks of a prompt is predicted.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, clip, default auto): Range of the samples of the encoder's input.
+ *   size (an int 32..=4096 px, default none): Side of the encoder's input in pixels, for encoders of dynamic size; 1024 if absent.
+ *
+ * Inputs:
+ *   image (Image): Image.
+ *   detections (BoundingBoxList): Boxes around objects, each of which gets a mask. Optional: may be NULL.
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_promptable_segmenter(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("promptable_segmenter", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_promptable_segmenter(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_bounding_box_list *detections,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "detections";
+    inputs_[1].value = (const opendr_value *)detections;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
     if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
     else opendr_value_free(&outputs_[0].value);
     return status_;
@@ -3139,7 +3230,7 @@ static inline opendr_status opendr_infer_visual_odometry(const opendr_learner *l
  *   resize (a str, one of auto, letterbox, top_left, top_left_truncated, stretch, default auto): How an image becomes the network's input.
  *   padding (an int 0..=255, default none): Level of the padding of a letterbox; recognised from the network if absent.
  *   colour (a str, one of auto, rgb, bgr, default auto): Order of the colour channels of the network's input.
- *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, default auto): Range of the samples of the network's input.
+ *   levels (a str, one of auto, 0_255, 0_1, -1_1, imagenet, clip, default auto): Range of the samples of the network's input.
  *   size (an int 32..=4096 px, default none): Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for most.
  *
  * Inputs:

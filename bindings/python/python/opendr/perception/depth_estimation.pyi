@@ -43,7 +43,7 @@ class ImportedDepthEstimatorLearner(NativeLearner):
             255)
         colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
         levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
-            '-1_1', 'imagenet')
+            '-1_1', 'imagenet', 'clip')
         size: Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for
             most. (default None; 32 to 4096 px)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
@@ -58,9 +58,9 @@ class ImportedDepthEstimatorLearner(NativeLearner):
     resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
     padding: Optional[int]
     colour: Literal['auto', 'rgb', 'bgr']
-    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip']
     size: Optional[int]
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, full_size: bool = ..., kind: Literal['auto', 'inverse_relative', 'relative', 'metric'] = ..., interpolation: Literal['auto', 'bicubic', 'bilinear_corners'] = ..., keep_aspect: bool = ..., multiple: Optional[int] = ..., depth_output: Optional[str] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: Optional[int] = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, full_size: bool = ..., kind: Literal['auto', 'inverse_relative', 'relative', 'metric'] = ..., interpolation: Literal['auto', 'bicubic', 'bilinear_corners'] = ..., keep_aspect: bool = ..., multiple: Optional[int] = ..., depth_output: Optional[str] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip'] = ..., size: Optional[int] = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, full_size: bool = ...) -> Heatmap: ...  # type: ignore[overload-overlap]
     @overload

@@ -110,7 +110,7 @@ class ImportedClassifierLearner(NativeLearner):
             255)
         colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
         levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
-            '-1_1', 'imagenet')
+            '-1_1', 'imagenet', 'clip')
         size: Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for
             most. (default None; 32 to 4096 px)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
@@ -122,12 +122,71 @@ class ImportedClassifierLearner(NativeLearner):
     resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
     padding: Optional[int]
     colour: Literal['auto', 'rgb', 'bgr']
-    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip']
     size: Optional[int]
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, probabilities: bool = ..., scores: Literal['auto', 'probabilities', 'logits'] = ..., crop: Optional[float] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: Optional[int] = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, probabilities: bool = ..., scores: Literal['auto', 'probabilities', 'logits'] = ..., crop: Optional[float] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip'] = ..., size: Optional[int] = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, probabilities: bool = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., probabilities: bool = ...) -> list[Category]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., probabilities: bool = ...) -> Iterator[Category]: ...
+
+class ImportedZeroShotClassifierLearner(NativeLearner):
+    """Classifies images by texts with your own CLIP, exported to ONNX by another tool; no training.
+
+    Task: image_classification. ``infer`` takes:
+
+        image: Image.
+
+    and returns: Category.
+
+    Args:
+        labels: Classes as texts, separated by semicolons, or by commas if there is no semicolon: `cat; dog; empty
+            room`. The classes of the model if empty. (default ''; live: may change while running, and for one
+            call of infer)
+        template: Text that is compared with the image, with `{}` in place of the class. (default 'a photo of a
+            {}'; live: may change while running, and for one call of infer)
+        logit_scale: Factor on the cosine similarities of image and texts before the softmax. Read from the
+            network if absent; 100, as that of the original CLIP, if it has none. (default None; 0.001 to 10000;
+            live: may change while running, and for one call of infer)
+        probabilities: Whether the prediction has the probability of every class. (default True; live: may change
+            while running, and for one call of infer)
+        context_length: Number of tokens of a text, with padding. Recognised from the text network if absent; 77
+            if it does not state it. (default None; 3 to 1024)
+        image_output: Name of the output with the vector of the image; recognised if absent. (default None)
+        text_output: Name of the output with the vector of the text; recognised if absent. (default None)
+        crop: Share of the image's shorter side that its central crop keeps, which has the aspect ratio of the
+            network's input; 0 for the whole image. Recognised from the network if absent. (default None; 0 to 1)
+        resize: How an image becomes the network's input. (default 'auto'; one of 'auto', 'letterbox', 'top_left',
+            'top_left_truncated', 'stretch')
+        padding: Level of the padding of a letterbox; recognised from the network if absent. (default None; 0 to
+            255)
+        colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
+        levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
+            '-1_1', 'imagenet', 'clip')
+        size: Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for
+            most. (default None; 32 to 4096 px)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    labels: str
+    template: str
+    logit_scale: Optional[float]
+    probabilities: bool
+    context_length: Optional[int]
+    image_output: Optional[str]
+    text_output: Optional[str]
+    crop: Optional[float]
+    resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
+    padding: Optional[int]
+    colour: Literal['auto', 'rgb', 'bgr']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip']
+    size: Optional[int]
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, labels: str = ..., template: str = ..., logit_scale: Optional[float] = ..., probabilities: bool = ..., context_length: Optional[int] = ..., image_output: Optional[str] = ..., text_output: Optional[str] = ..., crop: Optional[float] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip'] = ..., size: Optional[int] = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, labels: str = ..., template: str = ..., logit_scale: Optional[float] = ..., probabilities: bool = ...) -> Category: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., labels: str = ..., template: str = ..., logit_scale: Optional[float] = ..., probabilities: bool = ...) -> list[Category]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., labels: str = ..., template: str = ..., logit_scale: Optional[float] = ..., probabilities: bool = ...) -> Iterator[Category]: ...

@@ -52,3 +52,38 @@ class BodyPixLearner(NativeLearner):
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., threshold: float = ..., mask_threshold: float = ..., peak_threshold: float = ..., nms_radius: float = ..., max_detections: int = ..., resolution: int = ...) -> list[BoundingBoxList]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, progress: bool = ..., threshold: float = ..., mask_threshold: float = ..., peak_threshold: float = ..., nms_radius: float = ..., max_detections: int = ..., resolution: int = ...) -> Iterator[BoundingBoxList]: ...
+
+class ImportedPromptableSegmenterLearner(NativeLearner):
+    """Runs Segment Anything and its small variants, exported to ONNX by another tool, on points or the boxes of a detector.
+
+    Task: instance_segmentation. ``infer`` takes:
+
+        image: Image. Image.
+        detections: BoundingBoxList (optional). Boxes around objects, each of which gets a mask.
+
+    and returns: BoundingBoxList.
+
+    Args:
+        points: Points of one object, in pixels of the image: `x,y` or `x,y,label` each, separated by semicolons,
+            e.g. `320,240;100,80,0`. The label is 1 for a point on the object, as without a label, and 0 for one
+            outside. (default ''; live: may change while running, and for one call of infer)
+        quality_threshold: Predicted IoU below which masks are dropped. (default 0.0; 0 to 1; live: may change
+            while running, and for one call of infer)
+        mask_threshold: Logit above which pixels belong to the mask. (default 0.0; -50 to 50; live: may change
+            while running, and for one call of infer)
+        multimask: Which of the masks of a prompt is predicted. (default 'auto'; one of 'auto', 'best', 'single')
+        levels: Range of the samples of the encoder's input. (default 'auto'; one of 'auto', '0_255', '0_1',
+            '-1_1', 'imagenet', 'clip')
+        size: Side of the encoder's input in pixels, for encoders of dynamic size; 1024 if absent. (default None;
+            32 to 4096 px)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    points: str
+    quality_threshold: float
+    mask_threshold: float
+    multimask: Literal['auto', 'best', 'single']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip']
+    size: Optional[int]
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, points: str = ..., quality_threshold: float = ..., mask_threshold: float = ..., multimask: Literal['auto', 'best', 'single'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip'] = ..., size: Optional[int] = ...) -> None: ...
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], detections: Optional[BoundingBoxList] = ..., *, points: str = ..., quality_threshold: float = ..., mask_threshold: float = ...) -> BoundingBoxList: ...

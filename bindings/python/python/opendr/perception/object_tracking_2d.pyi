@@ -202,6 +202,10 @@ class ObjectTracking2DDeepSortLearner(DeepSort):
             running, and for one call of infer)
         per_class: Whether only boxes of the same class match. (default True; live: may change while running, and
             for one call of infer)
+        colour: Order of the colour channels of the network's input; `auto` is that of the model's manifest.
+            (default 'auto'; one of 'auto', 'rgb', 'bgr')
+        levels: Range of the samples of the network's input; `auto` is that of the model's manifest. (default
+            'auto'; one of 'auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip')
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
 
     Arguments of OpenDR that are accepted and have no effect:
@@ -221,7 +225,9 @@ class ObjectTracking2DDeepSortLearner(DeepSort):
     n_init: int
     nn_budget: int
     per_class: bool
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., max_dist: float = ..., min_confidence: float = ..., nms_max_overlap: float = ..., max_iou_distance: float = ..., max_age: int = ..., n_init: int = ..., nn_budget: int = ..., *, lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., per_class: bool = ...) -> None: ...
+    colour: Literal['auto', 'rgb', 'bgr']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip']
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., max_dist: float = ..., min_confidence: float = ..., nms_max_overlap: float = ..., max_iou_distance: float = ..., max_age: int = ..., n_init: int = ..., nn_budget: int = ..., *, lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., per_class: bool = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip'] = ...) -> None: ...
     def fit(self, dataset: DatasetLike, epochs: Any = ..., val_dataset: Optional[DatasetLike] = ..., val_epochs: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., train_transforms: Any = ..., val_transforms: Any = ..., *, out: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., ray: Union[bool, str] = ..., ray_options: Optional[dict[str, Any]] = ...) -> dict[str, Any]: ...
     def eval(self, dataset: Any, logging_path: Any = ..., silent: Any = ..., verbose: Any = ..., **options: Any) -> dict[str, Any]: ...
     def optimize(self, do_constant_folding: Any = ..., img_size: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Optional[DatasetLike] = ..., validation: Optional[DatasetLike] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...

@@ -335,7 +335,7 @@ class ImportedPoseEstimatorLearner(NativeLearner):
             255)
         colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
         levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
-            '-1_1', 'imagenet')
+            '-1_1', 'imagenet', 'clip')
         size: Side of the network's input, for models of dynamic size; if absent that of its convention, 640 for
             most. (default None; 32 to 4096 px)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
@@ -352,9 +352,9 @@ class ImportedPoseEstimatorLearner(NativeLearner):
     resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch']
     padding: Optional[int]
     colour: Literal['auto', 'rgb', 'bgr']
-    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip']
     size: Optional[int]
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., iou_threshold: float = ..., max_poses: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'detections', 'lists'] = ..., keypoints: Optional[int] = ..., keypoint_values: Optional[int] = ..., skeleton: Literal['auto', 'coco17', 'blazepose33', 'left_hand21', 'right_hand21', 'points'] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: Optional[int] = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., iou_threshold: float = ..., max_poses: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., layout: Literal['auto', 'candidates', 'detections', 'lists'] = ..., keypoints: Optional[int] = ..., keypoint_values: Optional[int] = ..., skeleton: Literal['auto', 'coco17', 'blazepose33', 'left_hand21', 'right_hand21', 'points'] = ..., resize: Literal['auto', 'letterbox', 'top_left', 'top_left_truncated', 'stretch'] = ..., padding: Optional[int] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip'] = ..., size: Optional[int] = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., keypoint_threshold: float = ..., iou_threshold: float = ..., max_poses: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ...) -> PoseList: ...  # type: ignore[overload-overlap]
     @overload
@@ -389,7 +389,7 @@ class ImportedTopDownPoseEstimatorLearner(NativeLearner):
             'left_hand21', 'right_hand21', 'points')
         colour: Order of the colour channels of the network's input. (default 'auto'; one of 'auto', 'rgb', 'bgr')
         levels: Range of the samples of the network's input. (default 'auto'; one of 'auto', '0_255', '0_1',
-            '-1_1', 'imagenet')
+            '-1_1', 'imagenet', 'clip')
         size: Side of the network's input in pixels, for models of dynamic size. (default None; 32 to 4096 px)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
     """
@@ -401,9 +401,9 @@ class ImportedTopDownPoseEstimatorLearner(NativeLearner):
     layout: Literal['auto', 'simcc', 'heatmaps', 'udp_heatmaps']
     skeleton: Literal['auto', 'coco17', 'blazepose33', 'left_hand21', 'right_hand21', 'points']
     colour: Literal['auto', 'rgb', 'bgr']
-    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet']
+    levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip']
     size: Optional[int]
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., max_poses: int = ..., box_class: str = ..., padding: float = ..., layout: Literal['auto', 'simcc', 'heatmaps', 'udp_heatmaps'] = ..., skeleton: Literal['auto', 'coco17', 'blazepose33', 'left_hand21', 'right_hand21', 'points'] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet'] = ..., size: Optional[int] = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., max_poses: int = ..., box_class: str = ..., padding: float = ..., layout: Literal['auto', 'simcc', 'heatmaps', 'udp_heatmaps'] = ..., skeleton: Literal['auto', 'coco17', 'blazepose33', 'left_hand21', 'right_hand21', 'points'] = ..., colour: Literal['auto', 'rgb', 'bgr'] = ..., levels: Literal['auto', '0_255', '0_1', '-1_1', 'imagenet', 'clip'] = ..., size: Optional[int] = ...) -> None: ...
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], detections: Optional[BoundingBoxList] = ..., *, threshold: float = ..., keypoint_threshold: float = ..., max_poses: int = ..., padding: float = ...) -> PoseList: ...
 
 class FilteredPose:
