@@ -23,7 +23,7 @@ pub fn mask_avx512() -> Result<()> {
     ))
 }
 
-/// See the other target.
+/// Returns the error of targets without it.
 #[cfg(not(all(target_arch = "x86_64", target_os = "linux")))]
 pub fn mask_avx512() -> Result<()> {
     Err(Error::unsupported("AVX-512 is hidden on Linux on x86-64 only"))
