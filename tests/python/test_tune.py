@@ -66,7 +66,7 @@ def test_a_learner_of_data_is_tuned(opendr, tmp_path):
             picture(tmp_path / "data" / split / "red" / f"{at}.png", (200 + at, at, 0))
             picture(tmp_path / "data" / split / "blue" / f"{at}.png", (at, 0, 200 + at))
     arguments = ["tune", "image_classifier", tmp_path / "data", "--split", "train", "--val-split", "val"]
-    arguments += ["--search", "lr=1e-4..1e-1", "--length", "8", "--points", "4", "--tuning-seeds", "1", "--trials", "3"]
+    arguments += ["--search", "lr=1e-4..1e-1", "--length", "8", "--evaluations", "4", "--tuning-seeds", "1", "--trials", "3"]
     done = opendr.run(*arguments, "--batch-size", "8", "--out", tmp_path / "tuned", "--json", "--quiet")
     assert done.returncode == 0, done.stderr
     report = json.loads(done.stdout)

@@ -70,7 +70,7 @@ fn search_flags() -> [Arg; 11] {
         number("trials", "30", "Total number of configurations, including those of earlier calls"),
         number("tuning-seeds", "3", "Seeds of each configuration that completes"),
         number("length", "100000", "Steps of a complete training"),
-        number("evaluations", "9", "Evaluations during a training").alias("points"),
+        number("evaluations", "9", "Evaluations during a training"),
         number("jobs", "1", "Trials that run at the same time"),
         Arg::new("pruner")
             .long("pruner")
