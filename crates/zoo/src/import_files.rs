@@ -12,6 +12,9 @@ use crate::import::imported;
 /// Maximum size of a file in bytes; an ONNX file cannot exceed 2 GiB.
 const MAX_BYTES: u64 = 1 << 31;
 
+/// Name of a single network in a container.
+const NETWORK: &str = "model.onnx";
+
 /// Creates a container at `output` from a user's files, converted to ONNX: a model of TensorFlow Lite, TensorFlow.js (the JSON first,
 /// then the weights) or ncnn (the `.param` file first, then the weights), or Whisper weights of CTranslate2, in safetensors, or in
 /// two ONNX files exported by PyTorch (the encoder first). The format is detected from the content of the first file. Further
@@ -53,7 +56,12 @@ pub fn import_files(
                 writer.add(name, &made)?;
             }
         }
-        None => writer.add("model.onnx", bytes)?,
+        None => writer.add(NETWORK, bytes)?,
+    }
+    if import.is_none() && given[own..].iter().any(|(name, _)| *name == NETWORK) {
+        return Err(Error::invalid_input(format!(
+            "{NETWORK} is the name of the first network in a container; rename the other file of this name, or give it first"
+        )));
     }
     for (name, bytes) in &given[own..] {
         writer.add(name, bytes)?;
@@ -192,6 +200,13 @@ mod tests {
         assert_eq!(model.file("tokenizer.json").unwrap(), b"{}");
         assert_eq!(model.file("model.onnx").unwrap(), b"network");
         assert!(import("model", &network).is_err());
+        let second = folder.join("model.onnx");
+        std::fs::write(&second, b"decoder").unwrap();
+        let files = [&network, &second];
+        let (manifest, options) = (Manifest::new("learner", ""), ImportOptions::default());
+        let refused = import_files(manifest, &files, &[], &[], &options, &folder.join("other"), |_| Ok(()));
+        assert!(refused.unwrap_err().to_string().contains("rename the other file"));
+        assert!(!folder.join("other").exists());
         std::fs::remove_dir_all(folder).ok();
     }
 
