@@ -20,17 +20,18 @@ def test_a_network_of_faces_has_the_detector_of_the_zoo(opendr, shared, tmp_path
     assert "detector: yunet/640, as in the default model of face_recognition" in done.stderr
 
     photo = shared / "data/photos/zidane.jpg"
-    (tmp_path / "persons/someone").mkdir(parents=True)
-    shutil.copy(photo, tmp_path / "persons/someone")
+    for name, file in [("someone", photo), ("another", shared / "data/photos/bus.jpg")]:
+        (tmp_path / "persons" / name).mkdir(parents=True)
+        shutil.copy(file, tmp_path / "persons" / name)
     predicted = []
     for name, model in [("zoo", ["--pretrained"]), ("mine", ["--model", mine])]:
-        run = tmp_path / name
+        run = tmp_path / f"run-{name}"
         fitted = opendr.run("fit", "face_recognition", tmp_path / "persons", *model, "--out", run, "--quiet")
         assert fitted.returncode == 0, fitted.stderr
         predicted.append(outputs(opendr, "face_recognition", "--model", run / "model", photo))
     assert predicted[0] == predicted[1]
-    names = [box["label"] for box in predicted[0][0]["boxes"]["boxes"]]
-    assert sorted(names) == ["someone", "unknown"]
+    boxes = predicted[0][0]["boxes"]
+    assert [box["name"] for box in boxes["boxes"]] == [boxes["classes"].index("someone"), "unknown"]
 
     full = ["--mode", "full", "--epochs", "1", *stated]
     refused = opendr.run("fit", "face_recognition", tmp_path / "persons", "--model", mine, *full, "--out", tmp_path / "full")
