@@ -201,11 +201,9 @@ impl Zoo {
         progress: &dyn Progress,
     ) -> Result<Vec<(String, String, Model)>> {
         let Ok(item) = self.find(learner) else { return Ok(Vec::new()) };
-        let part = |(name, model): (&str, Model)| {
-            let source = item.variant.parts.get(name).cloned().unwrap_or_default();
-            (name.to_owned(), source, model)
-        };
-        Ok(self.parts(&item, progress)?.into_iter().map(part).collect())
+        let models = self.parts(&item, progress)?;
+        let named = item.variant.parts.values().zip(models);
+        Ok(named.map(|(source, (name, model))| (name.to_owned(), source.clone(), model)).collect())
     }
 
     /// Returns the cache folder of a container from the repository's address, which is used only while that repository is set.

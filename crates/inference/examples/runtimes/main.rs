@@ -140,6 +140,12 @@ fn open(runtime: &dyn Runtime, bytes: &[u8], options: &SessionOptions) -> Opened
     Opened { session, opened: 1e3 * start.elapsed().as_secs_f64(), times: Vec::new(), refused }
 }
 
+fn median(figures: &[f64]) -> Option<f64> {
+    let mut sorted = figures.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
+}
+
 /// Returns the columns of the times, the ratio of the medians, and the columns of difference and opening.
 fn compare(
     bytes: &[u8],
@@ -180,15 +186,10 @@ fn compare(
             side.times.push(1e3 * (seconds(options.threads) - start) / runs as f64);
         }
     }
-    let median = |side: &Opened| {
-        let mut times = side.times.clone();
-        times.sort_by(f64::total_cmp);
-        times.get(times.len() / 2).copied()
-    };
     let time = |side: &Opened| {
-        median(side).map_or_else(|| format!("refused: {}", side.refused), |time| format!("{time:.3}"))
+        median(&side.times).map_or_else(|| format!("refused: {}", side.refused), |time| format!("{time:.3}"))
     };
-    let ratio = median(&sides[0]).zip(median(&sides[1])).map(|(ours, theirs)| ours / theirs);
+    let ratio = median(&sides[0].times).zip(median(&sides[1].times)).map(|(ours, theirs)| ours / theirs);
     let columns = format!(
         "{} | {} | {}",
         time(&sides[0]),

@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result};
 use opendr_inference::{Builtin, OnnxRuntime, Runtime, Session, SessionOptions};
 
 use super::inputs::Owned;
-use super::{MASK, name};
+use super::{MASK, median, name};
 
 /// First argument of the processes that [`print`] starts.
 pub const PART: &str = "part";
@@ -37,8 +37,8 @@ pub fn print(files: &[String], masks: bool) -> Result<()> {
             }
         }
         print!("| `{}` |", name(file));
-        for (kind, logarithms) in measured.iter_mut().zip(&mut logarithms) {
-            match kind.each_mut().map(|figures| median(figures)) {
+        for (kind, logarithms) in measured.iter().zip(&mut logarithms) {
+            match kind.each_ref().map(|figures| median(figures)) {
                 [Some(ours), Some(theirs)] => {
                     logarithms.push((ours / theirs).ln());
                     print!(" {ours:.1} | {theirs:.1} | {:.2} |", ours / theirs);
@@ -53,11 +53,6 @@ pub fn print(files: &[String], masks: bool) -> Result<()> {
         println!("# {kind}: geometric mean of {} ratios: {:.3}", logarithms.len(), mean.exp());
     }
     Ok(())
-}
-
-fn median(figures: &mut [f64]) -> Option<f64> {
-    figures.sort_by(f64::total_cmp);
-    figures.get(figures.len() / 2).copied()
 }
 
 /// Returns peak and time of a process, or why it failed.

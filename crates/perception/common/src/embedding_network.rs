@@ -10,12 +10,9 @@ use opendr_engine::params::Params;
 use opendr_engine::{Device, Error, Result};
 use opendr_vision::{ChannelOrder, Preprocess, Similarity};
 
-use crate::exported_network::{InputColour, InputLevels};
-use crate::image_network::{ImageNetwork, preprocess_from_input};
+use crate::exported_network::{InputColour, InputLevels, in_order};
+use crate::image_network::{FILE, ImageNetwork, preprocess_from_input};
 use crate::manifest_preprocess::StatedInput;
-
-/// File name of the network in a container.
-const FILE: &str = "model.onnx";
 
 /// Parameters of the input of a network of embeddings.
 #[derive(Debug, Clone, Params)]
@@ -132,11 +129,6 @@ fn preprocess(base: Preprocess, stated: &StatedInput, params: &EmbeddingInputPar
             missing.join(" and ")
         )));
     };
-    let [mean, std] = levels.map(|mut values| {
-        if order == ChannelOrder::Bgr {
-            values.reverse();
-        }
-        values
-    });
+    let [mean, std] = levels.map(|values| in_order(order, values));
     Ok(base.order(order).normalise(mean, std))
 }

@@ -7,7 +7,7 @@ use opendr_inference::{Session, TensorInfo, TensorView};
 use opendr_vision::{InputGeometry, Preprocess, Similarity};
 
 /// File name of the network in a container.
-const FILE: &str = "model.onnx";
+pub(crate) const FILE: &str = "model.onnx";
 
 /// A session with the pre-processing of its only input, an image, and reused input memory.
 pub struct ImageNetwork {

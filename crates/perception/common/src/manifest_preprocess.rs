@@ -6,6 +6,7 @@ use opendr_inference::TensorInfo;
 use opendr_vision::{ChannelOrder, Preprocess};
 use serde_json::Value;
 
+use crate::exported_network::in_order;
 use crate::image_network::preprocess_from_input;
 
 /// Returns the pre-processing for the network's `input`: its size and layout, and the normalisation `(level - mean) / std`
@@ -61,12 +62,7 @@ impl StatedInput {
     /// Returns mean and standard deviation of red, green and blue, if both are stated.
     pub fn rgb_normalisation(&self) -> Option<[[f32; 3]; 2]> {
         let both = [self.mean?, self.std?];
-        Some(both.map(|mut values| {
-            if self.order == Some(ChannelOrder::Bgr) {
-                values.reverse();
-            }
-            values
-        }))
+        Some(both.map(|values| in_order(self.order.unwrap_or(ChannelOrder::Rgb), values)))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Image classification.
 
+mod cropped_input;
 mod image_classifier;
 mod imported_classifier;
 mod imported_zero_shot;

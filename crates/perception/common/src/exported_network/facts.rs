@@ -205,8 +205,7 @@ impl Facts {
 pub fn open_outputs(onnx: &[u8], names: &[&str], device: Device) -> Result<Session> {
     let mut model = model_from_bytes(onnx)?;
     if let Some(graph) = &mut model.graph {
-        graph.output.retain(|output| names.contains(&output.name.as_str()));
-        passes::remove_dead_nodes(graph);
+        passes::reduce_to_outputs(graph, &[], names);
     }
     Session::open(&bytes_from_model(&model), device)
 }

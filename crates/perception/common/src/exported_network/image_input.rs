@@ -260,6 +260,14 @@ impl Fill for Crop<'_> {
     }
 }
 
+/// Returns values of red, green and blue in the order of the network's channels, or back.
+pub fn in_order(order: ChannelOrder, [red, green, blue]: [f32; 3]) -> [f32; 3] {
+    match order {
+        ChannelOrder::Bgr => [blue, green, red],
+        _ => [red, green, blue],
+    }
+}
+
 fn preprocess(image: &ImageInput, convention: &InputConvention) -> Preprocess {
     let padding = convention.padding as f32;
     let order = match convention.colour {
@@ -267,15 +275,9 @@ fn preprocess(image: &ImageInput, convention: &InputConvention) -> Preprocess {
         InputColour::Auto | InputColour::Rgb => ChannelOrder::Rgb,
     };
     let (mean, std) = convention.levels.mean_and_std();
-    let ordered = |mut values: [f32; 3]| {
-        if order == ChannelOrder::Bgr {
-            values.reverse();
-        }
-        values
-    };
     let [width, height] = image.size;
-    let base = Preprocess::new(width, height).order(order).layout(image.layout);
-    let base = base.normalise(ordered(mean), ordered(std));
+    let base = Preprocess::new(width, height).layout(image.layout);
+    let base = base.order(order).normalise(in_order(order, mean), in_order(order, std));
     match convention.resize {
         InputResize::Letterbox => base.letterbox(LetterboxAlign::Centre, padding),
         InputResize::TopLeft => base.letterbox(LetterboxAlign::TopLeft, padding),

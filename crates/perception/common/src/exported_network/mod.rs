@@ -13,7 +13,7 @@ mod rows;
 
 pub use class_names::class_names;
 pub use facts::{Facts, is_integer, last_two, open_outputs};
-pub use image_input::{ExportedNetwork, ImageInput};
+pub use image_input::{ExportedNetwork, ImageInput, in_order};
 pub use input_params::{InputColour, InputConvention, InputLevels, InputParams, InputResize};
 pub use kind::{
     IMAGE_EMBEDDINGS, NetworkKind, TEXT_EMBEDDINGS, depth_output, embedding_output, heatmaps, is_class_map,

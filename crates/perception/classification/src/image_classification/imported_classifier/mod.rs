@@ -15,6 +15,7 @@ use opendr_perception_common::exported_network::{
     ExportedNetwork, Facts, ImageInput, InputConvention, InputResize, NetworkKind, is_class_scores,
 };
 
+use super::cropped_input::settle_input;
 pub use params::{ClassScoreFormat, ImportedClassifierParams};
 
 /// A loaded classifier of another tool.
@@ -49,19 +50,7 @@ impl Learner for ImportedClassifier {
             ))
         })?;
         let known = recognised(&facts)?;
-        if params.crop.is_none() {
-            let is_cropped = known.is_some() && params.input.resize == InputResize::Auto;
-            params.crop = Some(if is_cropped { 1.0 } else { 0.0 });
-        }
-        let input = params.input.settle(known.unwrap_or(InputConvention::UNKNOWN));
-        let missing: Vec<_> = input.missing().collect();
-        if !missing.is_empty() {
-            return Err(Error::unsupported(format!(
-                "the network does not state how it was trained; set {}, and crop if it was trained on central crops ({})",
-                missing.join(", "),
-                facts.describe()
-            )));
-        }
+        let input = settle_input(&mut params.input, &mut params.crop, known, &facts)?;
         if params.scores == ClassScoreFormat::Auto {
             let tail = facts.tail(output);
             let is_final = ["Softmax", "Sigmoid"].iter().any(|name| tail.contains(name));

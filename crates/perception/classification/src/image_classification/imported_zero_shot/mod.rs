@@ -23,6 +23,7 @@ use opendr_perception_common::exported_network::{
     ExportedNetwork, Facts, ImageInput, InputColour, InputConvention, InputLevels, InputResize, NetworkKind,
 };
 
+use super::cropped_input::settle_input;
 use bicubic::Bicubic;
 use networks::{Networks, TextNetwork};
 pub use params::ImportedZeroShotClassifierParams;
@@ -81,19 +82,7 @@ impl Learner for ImportedZeroShotClassifier {
         let side = params.input.size.or_else(|| side_of(&half.facts)).unwrap_or(CLIP.size);
         let image = ImageInput::find(&half.facts, side)?;
         let known = is_of_clip(&half.facts).then_some(CLIP);
-        if params.crop.is_none() {
-            let is_cropped = known.is_some() && params.input.resize == InputResize::Auto;
-            params.crop = Some(if is_cropped { 1.0 } else { 0.0 });
-        }
-        let input = params.input.settle(known.unwrap_or(InputConvention::UNKNOWN));
-        let missing: Vec<_> = input.missing().collect();
-        if !missing.is_empty() {
-            return Err(Error::unsupported(format!(
-                "the network does not state how it was trained; set {}, and crop if it was trained on central crops ({})",
-                missing.join(", "),
-                half.facts.describe()
-            )));
-        }
+        let input = settle_input(&mut params.input, &mut params.crop, known, &half.facts)?;
         let logit_scale = logit_scale.unwrap_or(LOGIT_SCALE);
         params.logit_scale.get_or_insert(logit_scale);
         let text = TextNetwork::new(text, params.context_length)?;
