@@ -145,19 +145,11 @@ impl Constant {
                 return Err(damaged());
             }
             match kind {
-                Kind::F32 => Arena::from_numbers(
-                    &raw.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect::<Vec<_>>(),
-                ),
-                Kind::I64 => Arena::from_numbers(
-                    &raw.as_chunks().0.iter().map(|&b| i64::from_le_bytes(b)).collect::<Vec<_>>(),
-                ),
-                Kind::I32 => Arena::from_numbers(
-                    &raw.as_chunks().0.iter().map(|&b| i32::from_le_bytes(b)).collect::<Vec<_>>(),
-                ),
-                Kind::F16 => Arena::from_numbers(
-                    &raw.as_chunks().0.iter().map(|&b| u16::from_le_bytes(b)).collect::<Vec<_>>(),
-                ),
-                Kind::Bool => Arena::from_numbers(&raw.iter().map(|&b| u8::from(b != 0)).collect::<Vec<_>>()),
+                Kind::F32 => decoded(raw, f32::from_le_bytes),
+                Kind::I64 => decoded(raw, i64::from_le_bytes),
+                Kind::I32 => decoded(raw, i32::from_le_bytes),
+                Kind::F16 => decoded(raw, u16::from_le_bytes),
+                Kind::Bool => decoded(raw, |[byte]: [u8; 1]| u8::from(byte != 0)),
                 Kind::U8 | Kind::I8 => Arena::from_numbers(raw),
             }
         } else {
@@ -185,6 +177,17 @@ impl Constant {
         };
         Ok(Self { kind, shape, data, varies: false })
     }
+}
+
+/// Reads the elements of a file's tensor.
+fn decoded<T: Number, const BYTES: usize>(raw: &[u8], element: impl Fn([u8; BYTES]) -> T) -> Arena {
+    let mut arena = Arena::new(raw.len());
+    let region = Region { start: 0, bytes: raw.len() };
+    let elements = arena.split(region).0.numbers::<T>();
+    for (to, &bytes) in elements.iter_mut().zip(raw.as_chunks().0) {
+        *to = element(bytes);
+    }
+    arena
 }
 
 /// What a plan knows of an input of the graph.

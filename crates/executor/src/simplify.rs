@@ -3,12 +3,12 @@
 use std::collections::{HashMap, HashSet};
 
 use half::f16;
+use half::slice::{HalfBitsSliceExt, HalfFloatSliceExt};
 use opendr_engine::Result;
 use opendr_onnx::passes;
-use opendr_onnx::proto::GraphProto;
+use opendr_onnx::proto::{DataType, GraphProto, TensorProto};
 
 use crate::constant::Constant;
-use crate::tensor::Kind;
 
 /// Runs the passes that need no shapes. They know operators of opset 11 and later.
 pub(crate) fn simplify(graph: &mut GraphProto, opset: i64) -> Result<()> {
@@ -37,17 +37,25 @@ fn widen_half_constants(graph: &mut GraphProto) -> Result<()> {
         let Some(tensor) = by_name.get(input.as_str()).and_then(|&i| graph.initializer.get(i)) else {
             continue;
         };
-        let constant = Constant::from_tensor(tensor)?;
-        if constant.kind != Kind::F16 {
+        if tensor.data_type != i32::from(DataType::Float16) {
             continue;
         }
-        let halves = constant.data.get::<u16>(constant.region());
-        let raw_data = halves.iter().flat_map(|&half| f16::from_bits(half).to_f32().to_le_bytes()).collect();
-        let mut tensor = tensor.clone();
-        tensor.name.clone_from(output);
-        tensor.data_type = 1;
-        tensor.int32_data.clear();
-        tensor.raw_data = raw_data;
+        let constant = Constant::from_tensor(tensor)?;
+        let halves = constant.numbers::<u16>().reinterpret_cast::<f16>();
+        let mut raw_data = vec![0; 2 * constant.bytes()];
+        let mut floats = [0.0; 256];
+        for (halves, raw) in halves.chunks(floats.len()).zip(raw_data.chunks_mut(size_of_val(&floats))) {
+            let floats = &mut floats[..halves.len()];
+            halves.convert_to_f32_slice(floats);
+            raw.as_chunks_mut().0.iter_mut().zip(floats).for_each(|(raw, float)| *raw = float.to_le_bytes());
+        }
+        let tensor = TensorProto {
+            dims: tensor.dims.clone(),
+            data_type: DataType::Float.into(),
+            name: output.clone(),
+            raw_data,
+            ..TensorProto::default()
+        };
         widened.push((index, tensor));
     }
     let gone: HashSet<usize> = widened.iter().map(|(index, _)| *index).collect();

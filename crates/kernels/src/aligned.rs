@@ -1,15 +1,13 @@
 use std::cell::RefCell;
 use std::thread::LocalKey;
 
+use crate::arena::{Arena, Region};
+
 /// Memory for panels, aligned to a cache line; it grows and never shrinks.
 #[derive(Debug, Default)]
 pub(crate) struct AlignedBuffer {
-    lines: Vec<CacheLine>,
+    arena: Arena,
 }
-
-#[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
-struct CacheLine(#[expect(dead_code, reason = "read through a pointer to all lines")] [f32; 16]);
 
 /// A thread-local buffer.
 pub(crate) type ThreadBuffer = LocalKey<RefCell<AlignedBuffer>>;
@@ -24,30 +22,42 @@ thread_local! {
 impl AlignedBuffer {
     /// Returns the first number.
     pub(crate) fn start(&self) -> *const f32 {
-        self.lines.as_ptr().cast()
+        self.arena.start().cast()
     }
 
-    /// Returns `length` numbers with unspecified content.
+    /// Returns `length` numbers: zeros in a new buffer, unspecified ones in one that was used.
     pub(crate) fn take(&mut self, length: usize) -> &mut [f32] {
-        let lines = length.div_ceil(16);
-        if self.lines.len() < lines {
-            self.lines.resize(lines, CacheLine([0.0; 16]));
+        let bytes = length * size_of::<f32>();
+        if self.arena.bytes() < bytes {
+            self.arena = Arena::default();
+            self.arena = Arena::new(bytes);
         }
-        let flat = self.lines.as_mut_ptr().cast::<f32>();
-        // SAFETY: the lines are contiguous, initialised arrays of 16 numbers, and there are enough of them.
-        unsafe { std::slice::from_raw_parts_mut(flat, length) }
+        self.arena.split(Region { start: 0, bytes }).0.numbers()
     }
 }
 
 /// Magnitude of negligible weights, relative to the largest one.
 const NEGLIGIBLE: f32 = 1e-20;
 
-/// Sets weights to zero that are below 1e-20 of the largest one, so that sums do not change beyond their rounding. Weight decay leaves such
-/// weights in pruned channels; their products are subnormal, for which processors of Intel take about 150 cycles.
-pub(crate) fn flush_negligible(weights: &mut [f32]) {
-    let magnitudes = weights.iter().map(|weight| weight.abs()).filter(|magnitude| magnitude.is_finite());
-    let least = NEGLIGIBLE * magnitudes.fold(0.0, f32::max);
-    weights.iter_mut().filter(|weight| weight.abs() < least).for_each(|weight| *weight = 0.0);
+/// Bit of the sign.
+const SIGN: u32 = 1 << 31;
+
+/// Returns the magnitude below which weights count as zero: 1e-20 of the largest finite one, so that sums do not change beyond their
+/// rounding. Weight decay leaves such weights in pruned channels; their products are subnormal, for which processors of Intel take
+/// about 150 cycles.
+pub(crate) fn negligible(weights: &[f32]) -> f32 {
+    // Bits of magnitudes are ordered as the magnitudes are, and their maximum is vectorised.
+    let magnitude = |weight: &f32| weight.to_bits() & !SIGN;
+    let finite = |bits: u32| if bits < f32::INFINITY.to_bits() { bits } else { 0 };
+    let largest = weights.iter().map(|weight| finite(magnitude(weight))).fold(0, u32::max);
+    NEGLIGIBLE * f32::from_bits(largest)
+}
+
+/// Sets weights to zero whose magnitude is below `least`.
+pub(crate) fn flush_below(weights: &mut [f32], least: f32) {
+    for weight in weights {
+        *weight = if weight.abs() < least { 0.0 } else { *weight };
+    }
 }
 
 /// Calls a function with `length` numbers of this thread's buffer, or of a new one while that is in use.
@@ -68,13 +78,14 @@ mod tests {
 
     #[test]
     fn only_negligible_weights_are_flushed() {
+        let flushed = |weights: &mut [f32]| flush_below(weights, negligible(weights));
         let mut weights = [1e-40, -2e-21, 0.5, f32::NAN, f32::INFINITY, 0.0, -1e-20];
-        flush_negligible(&mut weights);
+        flushed(&mut weights);
         let bits = [0.0, 0.0, 0.5, f32::NAN, f32::INFINITY, 0.0, -1e-20].map(f32::to_bits);
         assert_eq!(weights.map(f32::to_bits), bits);
         let small = [1e-40, -2e-39, 1e-35, f32::NAN];
         let mut weights = small;
-        flush_negligible(&mut weights);
+        flushed(&mut weights);
         assert_eq!(weights.map(f32::to_bits), small.map(f32::to_bits), "no weight is large");
     }
 }

@@ -3,14 +3,16 @@
 use std::marker::PhantomData;
 
 /// Zeroed memory in which tensors of any element type lie at offsets that are multiples of 64 bytes.
+///
+/// Memory of large arenas is untouched until it is written: the system provides zeroed pages then.
 #[derive(Debug, Default)]
 pub struct Arena {
-    lines: Vec<Line>,
+    /// Zeroed by the allocator, which has such memory for alignments of up to 16 bytes only.
+    memory: Vec<u128>,
+    /// Bytes before the first multiple of [`ALIGNMENT`].
+    skipped: usize,
+    bytes: usize,
 }
-
-#[derive(Debug, Clone, Copy)]
-#[repr(align(64))]
-struct Line(#[expect(dead_code, reason = "read through a pointer to all lines")] [u8; ALIGNMENT]);
 
 /// Alignment of regions, in bytes.
 pub const ALIGNMENT: usize = 64;
@@ -39,7 +41,13 @@ numbers!(f32 f64 i64 i32 i16 i8 u64 u32 u16 u8);
 impl Arena {
     /// Creates an arena of at least that many bytes.
     pub fn new(bytes: usize) -> Self {
-        Self { lines: vec![Line([0; ALIGNMENT]); bytes.div_ceil(ALIGNMENT)] }
+        if bytes == 0 {
+            return Self::default();
+        }
+        let bytes = bytes.next_multiple_of(ALIGNMENT);
+        let memory = vec![0_u128; (bytes + ALIGNMENT) / size_of::<u128>() - 1];
+        let skipped = memory.as_ptr().cast::<u8>().align_offset(ALIGNMENT);
+        Self { memory, skipped, bytes }
     }
 
     /// Creates an arena that has the numbers in its first bytes.
@@ -64,7 +72,24 @@ impl Arena {
 
     /// Returns the number of bytes.
     pub fn bytes(&self) -> usize {
-        self.lines.len() * ALIGNMENT
+        self.bytes
+    }
+
+    /// Returns the first byte, aligned to [`ALIGNMENT`].
+    pub(crate) fn start(&self) -> *const u8 {
+        if self.bytes == 0 {
+            std::ptr::without_provenance(ALIGNMENT)
+        } else {
+            self.memory.as_ptr().cast::<u8>().wrapping_add(self.skipped)
+        }
+    }
+
+    fn start_mut(&mut self) -> *mut u8 {
+        if self.bytes == 0 {
+            std::ptr::without_provenance_mut(ALIGNMENT)
+        } else {
+            self.memory.as_mut_ptr().cast::<u8>().wrapping_add(self.skipped)
+        }
     }
 
     /// Returns the numbers of a region.
@@ -74,7 +99,7 @@ impl Arena {
     pub fn get<T: Number>(&self, region: Region) -> &[T] {
         self.check(region);
         // SAFETY: the region lies in initialised memory, aligned for any number, and is borrowed with the arena.
-        unsafe { numbers(self.lines.as_ptr().cast(), region) }
+        unsafe { numbers(self.start(), region) }
     }
 
     /// Returns a region to write, and the other ones to read.
@@ -84,7 +109,7 @@ impl Arena {
     pub fn split(&mut self, written: Region) -> (Written<'_>, Rest<'_>) {
         self.check(written);
         let bytes = self.bytes();
-        let start = self.lines.as_mut_ptr().cast::<u8>();
+        let start = self.start_mut();
         (
             Written { start, region: written, arena: PhantomData },
             Rest { start, bytes, written, arena: PhantomData },
@@ -174,6 +199,16 @@ impl<'a> Rest<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn new_arenas_are_aligned_zeros() {
+        for bytes in [0, 1, 64, 65, 4097, 1 << 20] {
+            let arena = Arena::new(bytes);
+            assert_eq!(arena.bytes(), bytes.next_multiple_of(ALIGNMENT));
+            let all = arena.get::<u8>(Region { start: 0, bytes: arena.bytes() });
+            assert!(all.as_ptr().addr().is_multiple_of(ALIGNMENT) && all.iter().all(|&byte| byte == 0));
+        }
+    }
 
     #[test]
     fn parts_are_separate() {

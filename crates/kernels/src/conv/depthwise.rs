@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::geometry::{Finish, Strides, Window};
-use crate::aligned::{AlignedBuffer, flush_negligible};
+use crate::aligned::{AlignedBuffer, flush_below, negligible};
 use crate::compute::Compute;
 use crate::cost::LayerCost;
 use crate::isa::{Isa, for_every_isa};
@@ -40,7 +40,7 @@ impl DepthwiseFilters {
                 all[tap * padded + channel] = weight;
             }
         }
-        flush_negligible(&mut all[..taps * padded]);
+        flush_below(&mut all[..taps * padded], negligible(weights));
         if let Some(bias) = bias {
             assert_eq!(bias.len(), channels, "one bias per channel");
             all[taps * padded..][..channels].copy_from_slice(bias);

@@ -1,6 +1,6 @@
 //! Weights in the order in which the inner loop reads them.
 
-use crate::aligned::{AlignedBuffer, flush_negligible};
+use crate::aligned::{AlignedBuffer, flush_below, negligible};
 use crate::compute::Compute;
 use crate::isa::{Isa, Set};
 use crate::lanes::{self, Lanes};
@@ -52,7 +52,8 @@ impl Filters {
             "the weights must have the stated shape"
         );
         let strides = [channels * taps, taps, 1];
-        Self::with_strides(compute, weights, strides, [groups, outputs, channels], kernel, bias, planar)
+        let source = Source { weights, strides };
+        Self::from_source(compute, &source, [groups, outputs, channels], kernel, bias, planar)
     }
 
     /// Packs a matrix `[depth, columns]` (transposed: `[columns, depth]`) as the filters of a product.
@@ -68,13 +69,13 @@ impl Filters {
     ) -> Self {
         assert_eq!(matrix.len(), depth * columns, "the matrix must have the stated shape");
         let strides = if transposed { [depth, 1, 1] } else { [1, columns, 1] };
-        Self::with_strides(compute, matrix, strides, [1, columns, depth], [1, 1], bias, false)
+        let source = Source { weights: matrix, strides };
+        Self::from_source(compute, &source, [1, columns, depth], [1, 1], bias, false)
     }
 
-    fn with_strides(
+    fn from_source(
         compute: &Compute,
-        weights: &[f32],
-        [output_stride, channel_stride, tap_stride]: [usize; 3],
+        source: &Source<'_>,
         [groups, outputs, channels]: [usize; 3],
         kernel: [usize; 2],
         bias: Option<&[f32]>,
@@ -84,34 +85,29 @@ impl Filters {
         let width = width_of(isa);
         let blocks = outputs.div_ceil(width);
         let vectors = if blocks.is_multiple_of(3) || blocks > 6 { 3 } else { 2 }.min(blocks.max(1));
-        let depth = kernel[0] * kernel[1] * channels;
+        let steps = source.steps(channels, kernel, planar);
+        let depth = steps.len();
         let group_length = blocks * width * depth;
+        let panel_outputs = vectors * width;
+        let least = negligible(source.weights);
         let mut panels = AlignedBuffer::default();
         let packed = panels.take(group_length * groups);
-        for group in 0..groups {
-            let to = &mut packed[group * group_length..][..group_length];
-            for first in (0..blocks).step_by(vectors) {
-                let panel_width = vectors.min(blocks - first) * width;
-                let panel = &mut to[first * width * depth..][..panel_width * depth];
-                let used = panel_width.min(outputs - first * width);
-                for step in 0..depth {
-                    let (channel, ky, kx) = if planar {
-                        let (row, kx) = (step / kernel[1], step % kernel[1]);
-                        (row % channels, row / channels, kx)
-                    } else {
-                        let (tap, channel) = (step / channels, step % channels);
-                        (channel, tap / kernel[1], tap % kernel[1])
-                    };
-                    let tap = (ky * kernel[1] + kx) * tap_stride;
-                    let row = &mut panel[step * panel_width..][..panel_width];
-                    for (i, number) in row[..used].iter_mut().enumerate() {
-                        let output = group * outputs + first * width + i;
-                        *number = weights[output * output_stride + channel * channel_stride + tap];
-                    }
-                }
-            }
+        let pack = |group: usize, first: usize, panel: &mut [f32]| {
+            let used = panel_outputs.min(outputs - first);
+            source.pack(group * outputs + first, used, &steps, panel);
+            flush_below(panel, least);
+        };
+        let panel_length = (panel_outputs * depth).max(1);
+        if groups == 1 {
+            compute.pool().run_on_pieces(packed, panel_length, |index, panel| {
+                pack(0, index * panel_outputs, panel);
+            });
+        } else {
+            compute.pool().run_on_pieces(packed, group_length.max(1), |group, all| {
+                let panels = all.chunks_mut(panel_length).enumerate();
+                panels.for_each(|(index, panel)| pack(group, index * panel_outputs, panel));
+            });
         }
-        flush_negligible(packed);
         let padded = blocks * width;
         let mut padded_bias = vec![0.0; padded * groups];
         if let Some(bias) = bias {
@@ -210,6 +206,48 @@ impl Filters {
             first: group * self.outputs + first,
             used: self.outputs - first,
             vectors: self.vectors.min(blocks - index * self.vectors),
+        }
+    }
+}
+
+/// Weights as a file has them.
+struct Source<'a> {
+    weights: &'a [f32],
+    /// Distances between outputs, channels and taps.
+    strides: [usize; 3],
+}
+
+impl Source<'_> {
+    /// Returns each weight of an output, in the order of the memory: its distance from the first one, and its step within a panel.
+    fn steps(&self, channels: usize, kernel: [usize; 2], planar: bool) -> Vec<(usize, usize)> {
+        let [_, channel_stride, tap_stride] = self.strides;
+        let taps = kernel[0] * kernel[1];
+        let step = |channel: usize, tap: usize| {
+            if planar {
+                (tap / kernel[1] * channels + channel) * kernel[1] + tap % kernel[1]
+            } else {
+                tap * channels + channel
+            }
+        };
+        let of_channel = |channel: usize| {
+            (0..taps).map(move |tap| (channel * channel_stride + tap * tap_stride, step(channel, tap)))
+        };
+        (0..channels).flat_map(of_channel).collect()
+    }
+
+    /// Writes `used` outputs from `first` on to a panel, which has a row of outputs per step.
+    fn pack(&self, first: usize, used: usize, steps: &[(usize, usize)], panel: &mut [f32]) {
+        /// Steps per pass over the outputs: their weights are a line of the cache, and their rows stay there.
+        const AT_ONCE: usize = 16;
+        let stride = self.strides[0];
+        let row_length = panel.len() / steps.len().max(1);
+        for steps in steps.chunks(AT_ONCE) {
+            for output in 0..used {
+                let from = &self.weights[(first + output) * stride..];
+                for &(offset, step) in steps {
+                    panel[step * row_length + output] = from[offset];
+                }
+            }
         }
     }
 }

@@ -110,15 +110,16 @@ impl ByteFilters {
             has_corrections: false,
             scales: vec![0.0; blocks * width],
         };
+        let mut row = Vec::with_capacity(words * taps);
         for output in 0..weights.outputs {
-            filters.pack(weights, output, depth);
+            filters.pack(weights, output, &mut row);
         }
         filters.has_corrections = filters.corrections.iter().any(|&correction| correction != 0);
         filters
     }
 
-    /// Packs the weights of an output. Bytes are `w - shift` with a shift of 128 where they are not signed.
-    fn pack(&mut self, weights: &ByteWeights<'_>, output: usize, depth: usize) {
+    /// Packs the weights of an output; `row` is memory for them. Bytes are `w - shift` with a shift of 128 where they are not signed.
+    fn pack(&mut self, weights: &ByteWeights<'_>, output: usize, row: &mut Vec<u8>) {
         let (width, taps) = (self.instructions.width(), self.instructions.taps());
         let zero = weights.zero(output);
         let shift = if weights.is_signed { 0 } else { 128 };
@@ -126,17 +127,25 @@ impl ByteFilters {
         let across = (self.vectors * width).min(self.constants.len() - first);
         let panel = &mut self.panels[first * self.words..][..across * self.words];
         let pixels = weights.kernel[0] * weights.kernel[1];
-        let mut sum = 0_i32;
-        for step in 0..depth {
-            let (tap, channel) = (step / weights.channels, step % weights.channels);
-            let weight = weights.number((output * weights.channels + channel) * pixels + tap);
-            sum = sum.wrapping_add(weight - zero);
-            let word = &mut panel[step / taps * across + output - first];
-            *word |= if taps == 4 {
-                ((weight - shift) & 0xff) << (8 * (step % 4))
-            } else {
-                ((weight - zero) & 0xffff) << (16 * (step % 2))
-            };
+        let length = weights.channels * pixels;
+        let from = &weights.bytes[output * length..][..length];
+        row.clear();
+        row.extend((0..pixels).flat_map(|tap| from.iter().skip(tap).step_by(pixels)));
+        let lowest = if weights.is_signed { 128 } else { 0 };
+        let number = |&byte: &u8| i32::from(byte ^ lowest) - i32::from(lowest) - zero;
+        let sum = row.iter().map(number).fold(0, i32::wrapping_add);
+        let words = panel.iter_mut().skip(output - first).step_by(across);
+        if taps == 4 {
+            let shift = shift as u8;
+            row.resize(4 * self.words, shift);
+            for (word, bytes) in words.zip(row.as_chunks().0) {
+                *word = i32::from_le_bytes(bytes.map(|byte| byte ^ shift));
+            }
+        } else {
+            for (word, pair) in words.zip(row.chunks(2)) {
+                let second = pair.get(1).map_or(0, number);
+                *word = (number(&pair[0]) & 0xffff) | (second << 16);
+            }
         }
         let mut constant = weights.bias.get(output).copied().unwrap_or(0);
         if self.instructions.is_bytes() {
