@@ -123,11 +123,44 @@ impl Planner<'_> {
         self.add(value.kind, shape, layout, source)
     }
 
-    /// Returns a part of a value that a step writes, from a byte on.
-    pub(crate) fn view(&mut self, id: Id, bytes: usize, shape: Vec<usize>) -> Option<Id> {
+    /// Returns the same elements, in the order of the shape, with another shape.
+    ///
+    /// Where they lie with channels last, a copy in the order of the shape is planned, but only made for what reads it: operators on
+    /// the other shape that the images allow as they lie read these, see [`Planner::images`].
+    pub(crate) fn reshaped(&mut self, id: Id, shape: Vec<usize>) -> Result<Id> {
+        let images = if self.is_channels_last(id) { Some(id) } else { self.values[id].reshaped };
+        if let Some(images) = images.filter(|&images| self.values[images].shape == shape) {
+            return Ok(images);
+        }
+        let dims = &self.values[id].shape;
+        let keeps_channels = dims.len() > 2 && shape.len() > 2 && dims[..2] == shape[..2];
+        if keeps_channels && self.is_channels_last(id) && !self.is_constant(id) {
+            return Ok(self.alias(id, shape, Layout::ChannelsLast));
+        }
+        let plain = self.plain(id)?;
+        let reshaped = self.alias(plain, shape, Layout::Plain);
+        self.values[reshaped].reshaped = images;
+        Ok(reshaped)
+    }
+
+    /// Returns the value with channels last of which a value is a reshape with one image for each index of dimension `along`, and
+    /// dimensions of 1 before it.
+    pub(crate) fn images(&self, id: Id, along: usize) -> Option<Id> {
+        let value = &self.values[id];
+        let images = value.reshaped?;
+        let count = *self.values[images].shape.first()?;
+        let (before, rest) = value.shape.split_at_checked(along)?;
+        (rest.first() == Some(&count) && before.iter().all(|&dim| dim == 1)).then_some(images)
+    }
+
+    /// Returns a part of a value that a step writes, from a byte on; `None` for other values, and where the part is not aligned.
+    pub(crate) fn view(&mut self, id: Id, bytes: usize, shape: Vec<usize>, layout: Layout) -> Option<Id> {
         let value = self.values[id].clone();
         let Source::Buffer(buffer, offset) = value.source else { return None };
-        Some(self.add(value.kind, shape, Layout::Plain, Source::Buffer(buffer, offset + bytes)))
+        let start = offset + bytes;
+        start
+            .is_multiple_of(ALIGNMENT)
+            .then(|| self.add(value.kind, shape, layout, Source::Buffer(buffer, start)))
     }
 
     /// Returns the value in the order of its shape.

@@ -130,7 +130,7 @@ impl<'a> Planner<'a> {
     }
 
     pub(crate) fn add(&mut self, kind: Kind, shape: Vec<usize>, layout: Layout, source: Source) -> Id {
-        self.values.push(Value { kind, shape, layout, source, other: None });
+        self.values.push(Value { kind, shape, layout, source, other: None, reshaped: None });
         self.values.len() - 1
     }
 

@@ -33,6 +33,8 @@ pub(crate) struct Value {
     pub(crate) source: Source,
     /// The same elements in the other layout.
     pub(crate) other: Option<Id>,
+    /// The value with channels last whose elements these are, in the order of its shape.
+    pub(crate) reshaped: Option<Id>,
 }
 
 impl Value {

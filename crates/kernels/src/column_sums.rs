@@ -44,20 +44,49 @@ for_every_isa!(
 
 #[inline(always)]
 unsafe fn sum<V: Lanes>(values: *const f32, rows: usize, columns: usize, sums: *mut f32) {
-    let whole = columns / V::WIDTH * V::WIDTH;
+    let mut at = 0;
     // SAFETY: by contract there are `rows` rows of `columns` numbers, and `columns` sums.
     unsafe {
-        for j in (0..whole).step_by(V::WIDTH) {
-            let mut total = V::load(sums.add(j));
-            for i in 0..rows {
-                total = total.add(V::load(values.add(i * columns + j)));
-            }
-            total.store(sums.add(j));
+        while columns - at >= 4 * V::WIDTH {
+            sum_of_columns::<V, 4>(values.add(at), rows, columns, sums.add(at));
+            at += 4 * V::WIDTH;
         }
-        for i in 0..rows {
-            for j in whole..columns {
-                *sums.add(j) += *values.add(i * columns + j);
+        while columns - at >= V::WIDTH {
+            sum_of_columns::<V, 1>(values.add(at), rows, columns, sums.add(at));
+            at += V::WIDTH;
+        }
+        let rest = columns - at;
+        if rest > 0 {
+            let mut total = V::load_some(sums.add(at), rest);
+            for i in 0..rows {
+                total = total.add(V::load_some(values.add(i * columns + at), rest));
             }
+            total.store_some(sums.add(at), rest);
+        }
+    }
+}
+
+/// Sums the columns of R registers.
+#[inline(always)]
+unsafe fn sum_of_columns<V: Lanes, const R: usize>(
+    values: *const f32,
+    rows: usize,
+    columns: usize,
+    sums: *mut f32,
+) {
+    // SAFETY: by contract there are `rows` rows of `columns` numbers, of which those of R registers are within.
+    unsafe {
+        let mut totals = [V::splat(0.0); R];
+        for (i, total) in totals.iter_mut().enumerate() {
+            *total = V::load(sums.add(i * V::WIDTH));
+        }
+        for row in 0..rows {
+            for (i, total) in totals.iter_mut().enumerate() {
+                *total = total.add(V::load(values.add(row * columns + i * V::WIDTH)));
+            }
+        }
+        for (i, total) in totals.iter().enumerate() {
+            total.store(sums.add(i * V::WIDTH));
         }
     }
 }

@@ -14,7 +14,14 @@ use crate::constant::Constant;
 use crate::graph::Packed;
 use crate::io::{Io, Kernel};
 use crate::planner::{Id, Layout, Planner};
+use crate::remap::transposed;
 use crate::tensor::{Kind, count};
+
+/// Channels from which on images are multiplied as they lie.
+const MANY: usize = 16;
+
+/// Multiplications of a piece of small products.
+const PIECE: usize = 1 << 18;
 
 pub(crate) fn matmul(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
     let (a, b) = (required(node, inputs, 0)?, required(node, inputs, 1)?);
@@ -30,6 +37,9 @@ pub(super) fn multiply(
     product: u8,
     is_last: bool,
 ) -> Result<Id> {
+    if let Some(product) = along_width(planner, [a, b])? {
+        return Ok(product);
+    }
     let (a, b) = (planner.plain(a)?, planner.plain(b)?);
     if planner.kind(a) != Kind::F32 || planner.kind(b) != Kind::F32 {
         return Err(node.refused("elements that are not floats"));
@@ -43,6 +53,42 @@ pub(super) fn multiply(
     }
     let (left, right) = (left.offsets(rows * depth), right.offsets(depth * columns));
     batched(planner, [a, b], sizes, [left, right], shape)
+}
+
+/// Multiplies rows of images with channels last by a constant matrix, for each channel as they lie.
+fn along_width(planner: &mut Planner<'_>, [a, b]: [Id; 2]) -> Result<Option<Id>> {
+    let images = if planner.is_channels_last(a) { Some(a) } else { planner.value(a).reshaped };
+    let (Some(images), Some(matrix)) = (images, planner.constant(b)) else { return Ok(None) };
+    let (&[count, channels, height, width], &[depth, columns]) =
+        (planner.value(images).shape.as_slice(), matrix.shape.as_slice())
+    else {
+        return Ok(None);
+    };
+    let of_floats = planner.kind(images) == Kind::F32 && matrix.kind == Kind::F32;
+    if !of_floats || depth != width || planner.value(a).shape.last() != Some(&width) || channels < MANY {
+        return Ok(None);
+    }
+    let matrix = planner.plain(b)?;
+    let left = planner.emit_one(
+        transposed(&[depth, columns], &[1, 0], Kind::F32.bytes()),
+        &[matrix],
+        Kind::F32,
+        vec![columns, depth],
+        Layout::Plain,
+    )?;
+    let rows = count * height;
+    let step = ProductStep {
+        sizes: [columns, width, channels],
+        left: vec![0; rows],
+        right: (0..rows).map(|row| row * width * channels).collect(),
+    };
+    let mut shape = planner.shape(a);
+    if let Some(last) = shape.last_mut() {
+        *last = columns;
+    }
+    let of_images = vec![count, channels, height, columns];
+    let product = planner.emit_one(step, &[left, images], Kind::F32, of_images, Layout::ChannelsLast)?;
+    planner.reshaped(product, shape).map(Some)
 }
 
 /// Emits products of matrices that begin at these elements of the two values.
@@ -191,10 +237,23 @@ impl Kernel for ProductStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
         let [rows, depth, columns] = self.sizes;
         let (a, b, y) = (io.read::<f32>(0), io.read::<f32>(1), io.write::<f32>());
-        for ((y, &a_at), &b_at) in y.chunks_mut((rows * columns).max(1)).zip(&self.left).zip(&self.right) {
+        let product = |at: usize, y: &mut [f32]| {
+            let (a_at, b_at) = (self.left[at], self.right[at]);
             let a = Matrix::new(&a[a_at..a_at + rows * depth], rows, depth);
             let b = Matrix::new(&b[b_at..b_at + depth * columns], depth, columns);
             Product::new().run(io.compute, a, b, MatrixMut::new(y, rows, columns));
+        };
+        let length = (rows * columns).max(1);
+        // Small products run side by side, as many in a piece as are worth a thread.
+        let at_once = (PIECE / (length * depth).max(1)).max(1);
+        let work = |piece: usize, y: &mut [f32]| {
+            let products = y.chunks_mut(length).enumerate();
+            products.for_each(|(at, y)| product(piece * at_once + at, y));
+        };
+        if self.left.len() > at_once {
+            io.compute.pool().run_on_pieces(y, at_once * length, work);
+        } else {
+            work(0, y);
         }
         Ok(())
     }

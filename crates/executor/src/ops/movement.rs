@@ -135,11 +135,26 @@ fn take(planner: &mut Planner<'_>, x: Id, ranges: &[Option<Vec<usize>>]) -> Resu
     if shape == value.shape && ranges.iter().flatten().all(|range| range.iter().copied().eq(0..range.len())) {
         return Ok(vec![x]);
     }
+    let mut limited = (0..ranges.len()).filter(|&d| ranges[d].is_some());
+    if let (Some(along), None) = (limited.next(), limited.next())
+        && let Some(images) = planner.images(x, along)
+    {
+        let mut of_images = vec![None; planner.rank(images)];
+        of_images[0].clone_from(&ranges[along]);
+        let taken = take(planner, images, &of_images)?;
+        return taken.into_iter().map(|id| planner.reshaped(id, shape.clone())).collect();
+    }
     let (dims, mut ranges) = (value.physical(), ranges.to_vec());
     if value.layout == Layout::ChannelsLast {
         ranges[1..].rotate_left(1);
     }
     let strides = strides(&dims);
+    if let Some(start) = first_of_outermost(&dims, &ranges) {
+        let bytes = start * value.kind.bytes();
+        if let Some(part) = planner.view(x, bytes, shape.clone(), value.layout) {
+            return Ok(vec![part]);
+        }
+    }
     let mut base = 0;
     let mut axes = Vec::new();
     for ((length, stride), range) in dims.iter().zip(&strides).zip(&ranges) {
@@ -168,6 +183,17 @@ fn take(planner: &mut Planner<'_>, x: Id, ranges: &[Option<Vec<usize>>]) -> Resu
     }
     let remap = Remap::new(axes, value.kind.bytes());
     Ok(vec![planner.emit_one(remap, &[x], value.kind, shape, value.layout)?])
+}
+
+/// Returns the first element of consecutive indices of the outermost dimension of more than 1, where no other one is limited.
+fn first_of_outermost(dims: &[usize], ranges: &[Option<Vec<usize>>]) -> Option<usize> {
+    let along = dims.iter().position(|&dim| dim > 1)?;
+    let range = ranges[along].as_ref()?;
+    let others = (0..dims.len()).filter(|&d| d != along);
+    let is_all = |d: usize| ranges[d].as_ref().is_none_or(|range| range.len() == dims[d]);
+    let first = *range.first()?;
+    let is_part = range.iter().copied().eq(first..first + range.len()) && others.into_iter().all(is_all);
+    is_part.then(|| first * dims[along + 1..].iter().product::<usize>())
 }
 
 pub(crate) fn split(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
@@ -318,10 +344,25 @@ pub(crate) fn concat(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     }
     shape[along] = total;
     count(&shape)?;
+    let images: Option<Vec<Id>> = ids.iter().map(|&id| planner.images(id, along)).collect();
+    if let Some(images) = images.filter(|images| {
+        let image = |id: &Id| planner.value(*id).shape.get(1..);
+        images.iter().all(|id| image(id) == image(&images[0]))
+    }) {
+        let joined = joined(planner, &images, 0)?;
+        return Ok(vec![planner.reshaped(joined, shape)?]);
+    }
+    Ok(vec![joined(planner, &ids, along)?])
+}
+
+/// Joins values of one type, whose other dimensions are equal, along an axis.
+fn joined(planner: &mut Planner<'_>, ids: &[Id], along: usize) -> Result<Id> {
+    let (mut shape, kind) = (planner.shape(ids[0]), planner.kind(ids[0]));
+    shape[along] = ids.iter().map(|&id| planner.value(id).shape[along]).sum();
     let last = shape.len() > 2 && ids.iter().any(|&id| planner.is_channels_last(id));
     let layout = if last { Layout::ChannelsLast } else { Layout::Plain };
     let mut reads = Vec::new();
-    for &id in &ids {
+    for &id in ids {
         reads.push(if last { planner.channels_last(id)? } else { planner.plain(id)? });
     }
     let place = match (layout, along) {
@@ -335,7 +376,7 @@ pub(crate) fn concat(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
         chunks.push(planner.value(id).physical()[place..].iter().product());
     }
     let kernel = ConcatCopy { chunks, size: kind.bytes() };
-    Ok(vec![planner.emit_one(kernel, &reads, kind, shape, layout)?])
+    planner.emit_one(kernel, &reads, kind, shape, layout)
 }
 
 struct ConcatCopy {

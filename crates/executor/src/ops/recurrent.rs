@@ -112,10 +112,10 @@ fn build(
     let whole = lines(output) + 2 * lines(state);
     let y = planner.emit(step, &[Some(x), h, c], &[(Kind::F32, vec![whole], Layout::Plain)])?;
     let y = y.first().copied().ok_or_else(|| node.damaged("its outputs"))?;
-    let mut outputs = vec![planner.view(y, 0, all)];
-    outputs.push(planner.view(y, 4 * lines(output), state_shape.clone()));
+    let mut outputs = vec![planner.view(y, 0, all, Layout::Plain)];
+    outputs.push(planner.view(y, 4 * lines(output), state_shape.clone(), Layout::Plain));
     if gates == 4 {
-        outputs.push(planner.view(y, 4 * (lines(output) + lines(state)), state_shape));
+        outputs.push(planner.view(y, 4 * (lines(output) + lines(state)), state_shape, Layout::Plain));
     }
     outputs
         .into_iter()

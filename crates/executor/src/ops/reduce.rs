@@ -1,7 +1,7 @@
 //! Reductions.
 
 use opendr_engine::Result;
-use opendr_kernels::Binary;
+use opendr_kernels::{Binary, add_column_sums};
 use opendr_onnx::proto::NodeProto;
 
 use super::inputs::{axis, list, required};
@@ -57,24 +57,19 @@ pub(crate) fn reduce(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Opti
     let kept: Vec<usize> = (0..dims.len()).map(|d| if gone.contains(&d) { 1 } else { dims[d] }).collect();
     let shape: Vec<usize> = (0..dims.len()).filter(|d| keep || !gone.contains(d)).map(|d| kept[d]).collect();
     let length = count(&gone.iter().map(|&d| dims[d]).collect::<Vec<_>>())?;
-    // Height and width of a tensor with channels last lie between the images and the channels.
+    let first = gone.iter().copied().min().unwrap_or(0);
+    // The last dimensions but the channels lie side by side in a tensor with channels last.
     let spatial = dims.len() > 2
         && planner.is_channels_last(x)
         && reduction != Reduction::LogSumExp
-        && (2..dims.len()).all(|d| gone.contains(&d))
-        && !gone.contains(&0)
-        && !gone.contains(&1);
+        && first >= 2
+        && (first..dims.len()).all(|d| gone.contains(&d));
     if spatial {
         let step = ReduceStep { reduction, kind, length, inner: dims[1] };
         let y = planner.emit_one(step, &[x], kind, kept, Layout::ChannelsLast)?;
-        if keep {
-            return Ok(vec![y]);
-        }
-        let y = planner.plain(y)?;
-        return Ok(vec![planner.alias(y, shape, Layout::Plain)]);
+        return Ok(vec![if keep { y } else { planner.reshaped(y, shape)? }]);
     }
     let mut x = planner.plain(x)?;
-    let first = gone.iter().copied().min().unwrap_or(0);
     let last = gone.iter().copied().max().unwrap_or(0);
     let joined = (first..=last).all(|d| gone.contains(&d) || dims[d] == 1);
     let rest: usize = dims.get(last + 1..).map_or(1, |rest| rest.iter().product());
@@ -148,13 +143,13 @@ impl ReduceStep {
                     Reduction::Min => x.iter().copied().fold(start, f32::min),
                     Reduction::Prod => x.iter().product(),
                 };
+            } else if matches!(self.reduction, Reduction::Sum | Reduction::Mean | Reduction::LogSum) {
+                y.fill(start);
+                add_column_sums(isa, x, y);
             } else {
                 y.fill(start);
                 for x in x.chunks_exact(inner) {
                     match self.reduction {
-                        Reduction::Sum | Reduction::Mean | Reduction::LogSum => {
-                            Binary::Add.apply_to(isa, y, x);
-                        }
                         Reduction::L1 => y.iter_mut().zip(x).for_each(|(y, x)| *y += x.abs()),
                         Reduction::Max => Binary::Max.apply_to(isa, y, x),
                         Reduction::Min => Binary::Min.apply_to(isa, y, x),

@@ -7,7 +7,7 @@ use super::inputs::{axis, list, optional, required};
 use super::movement::sizes;
 use crate::attributes::Attributes;
 use crate::constant::Constant;
-use crate::planner::{Id, Layout, Planner};
+use crate::planner::{Id, Planner};
 use crate::tensor::{Kind, count};
 
 pub(crate) fn identity(
@@ -27,8 +27,7 @@ fn reshaped(planner: &mut Planner<'_>, node: &NodeProto, x: Id, shape: Vec<usize
     if count(&shape)? != count(&planner.shape(x))? {
         return Err(node.damaged(&format!("{:?} does not become {shape:?}", planner.shape(x))));
     }
-    let x = planner.plain(x)?;
-    Ok(vec![planner.alias(x, shape, Layout::Plain)])
+    Ok(vec![planner.reshaped(x, shape)?])
 }
 
 pub(crate) fn reshape(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {

@@ -182,6 +182,7 @@ unsafe fn rows_of_piece<V: Lanes>(job: &Job<'_>, piece: usize) {
         // SAFETY: passed on.
         unsafe {
             match (window.kernel[1], window.strides[1], window.dilations[1]) {
+                (1, 1, _) => row::<V, 1, 1>(job, image, oy),
                 (3, 1, 1) => row::<V, 3, 1>(job, image, oy),
                 (3, 2, 1) => row::<V, 3, 2>(job, image, oy),
                 (5, 1, 1) => row::<V, 5, 1>(job, image, oy),
