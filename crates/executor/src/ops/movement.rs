@@ -379,6 +379,11 @@ fn joined(planner: &mut Planner<'_>, ids: &[Id], along: usize) -> Result<Id> {
     planner.emit_one(kernel, &reads, kind, shape, layout)
 }
 
+/// Elements that a thread copies at a time.
+const PIECE: usize = 1 << 15;
+/// Inputs that are joined in one pass over the output.
+const GROUP: usize = 8;
+
 struct ConcatCopy {
     /// Elements of each input per step along the outer dimensions.
     chunks: Vec<usize>,
@@ -389,14 +394,24 @@ impl Kernel for ConcatCopy {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
         by_size!(self.size, T => {
             let y = io.write::<T>();
-            let total: usize = self.chunks.iter().sum();
+            let total = self.chunks.iter().sum::<usize>().max(1);
             let mut at = 0;
-            for (slot, &chunk) in self.chunks.iter().enumerate().filter(|(_, chunk)| **chunk > 0) {
-                let x = io.read::<T>(slot);
-                for (y, x) in y.chunks_mut(total).zip(x.chunks(chunk)) {
-                    y[at..at + chunk].copy_from_slice(x);
+            // A group of inputs at a time, so that nothing is allocated.
+            for (group, chunks) in self.chunks.chunks(GROUP).enumerate() {
+                let mut parts = [&[] as &[T]; GROUP];
+                for (slot, part) in parts.iter_mut().enumerate().take(chunks.len()) {
+                    *part = io.read::<T>(group * GROUP + slot);
                 }
-                at += chunk;
+                let rows = (PIECE / total).max(1);
+                io.compute.pool().run_on_pieces(y, rows * total, |piece, y| {
+                    let mut at = at;
+                    for (part, &chunk) in parts.iter().zip(chunks).filter(|(_, chunk)| **chunk > 0) {
+                        let rows = part[piece * rows * chunk..].chunks(chunk);
+                        y.chunks_mut(total).zip(rows).for_each(|(y, x)| y[at..at + chunk].copy_from_slice(x));
+                        at += chunk;
+                    }
+                });
+                at += chunks.iter().sum::<usize>();
             }
         });
         Ok(())

@@ -1,25 +1,30 @@
 //! Prints a table of the built-in runtime and ONNX Runtime side by side on ONNX files, on random inputs, with one and
 //! with two threads: `cargo run --release -p opendr-inference --example runtimes -- ROUNDS FILE...`.
 //!
-//! One line per file: medians of the times of a run in milliseconds, taking turns (with one thread, the time that the
+//! One line per file: medians of the times of a run in milliseconds, taking turns that begin with runs that are not timed (with one thread, the time that the
 //! thread has computed, which other programs do not change much), their ratio, the largest difference of an output
 //! relative to its largest magnitude, and the times to open the model. ONNX Runtime is found as by the library
 //! (`ORT_DYLIB_PATH`). `runtimes memory FILE...` prints the peak memory of processes that open and run a model with
 //! one runtime, and their times to open it. With `--avx2` first, CPUID reports neither AVX-512 nor AMX to both sides.
-//! `runtimes layers FILE...` prints the nodes of models that take longest.
+//! `runtimes layers FILE...` prints the nodes of models that take longest, with one
+//! thread and with two.
 
 mod cpuid;
 mod inputs;
 mod memory;
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use opendr_engine::{Error, Result};
+use opendr_executor::{Executor, LayerProfile};
 use opendr_inference::{Builtin, OnnxRuntime, Runtime, Session, SessionOptions, TensorData, TensorView};
+use opendr_kernels::Compute;
 
 use inputs::Owned;
 
 const THREADS: [usize; 2] = [1, 2];
+/// Time for which a side runs before its turn is timed.
+const SETTLING: Duration = Duration::from_millis(3);
 /// Option that hides AVX-512 from both sides.
 const MASK: &str = "--avx2";
 
@@ -97,31 +102,35 @@ fn name(file: &str) -> &str {
     &file[start..]
 }
 
-/// Prints the time of the nodes of a model, the longest first.
+/// Prints the times of the nodes of a model with one thread and with two, the longest first.
 fn print_layers(file: &str, bytes: &[u8]) -> Result<()> {
-    let mut executor = opendr_executor::Executor::open(bytes, opendr_kernels::Compute::single())?;
     let infos = Session::open_with(&Builtin, bytes, SessionOptions::default())?.inputs().to_vec();
     let owned: Vec<Owned> = infos.iter().map(Owned::random).collect();
-    let tensors: Vec<opendr_executor::Tensor<'_>> = owned.iter().filter_map(Owned::of_executor).collect();
-    let mut least: Vec<opendr_executor::LayerProfile> = executor.profile(&tensors, &mut |_| Ok(()))?;
+    let [single, two] = [layers(bytes, 1, &owned)?, layers(bytes, 2, &owned)?];
+    let micros = |layer: &LayerProfile| 1e6 * layer.time.as_secs_f64();
+    let totals = [&single, &two].map(|layers| layers.iter().map(micros).sum::<f64>());
+    println!("# {file}: {:.3} ms with one thread, {:.3} ms with two", totals[0] / 1e3, totals[1] / 1e3);
+    let mut both: Vec<(&LayerProfile, &LayerProfile)> = single.iter().zip(&two).collect();
+    both.sort_by_key(|(layer, _)| std::cmp::Reverse(layer.time));
+    for (layer, parallel) in both.iter().take(40) {
+        let share = 100.0 * micros(layer) / totals[0];
+        let (operator, name) = (&layer.operator, &layer.name);
+        println!("{:>9.1} us {:>9.1} us {share:5.1} % {operator} {name}", micros(layer), micros(parallel));
+    }
+    Ok(())
+}
+
+/// Returns the shortest time of each step in 30 runs.
+fn layers(bytes: &[u8], threads: usize, inputs: &[Owned]) -> Result<Vec<LayerProfile>> {
+    let mut executor = Executor::open(bytes, Compute::with_threads(threads))?;
+    let tensors: Vec<opendr_executor::Tensor<'_>> = inputs.iter().filter_map(Owned::of_executor).collect();
+    let mut least: Vec<LayerProfile> = executor.profile(&tensors, &mut |_| Ok(()))?;
     for _ in 0..30 {
         for (least, new) in least.iter_mut().zip(executor.profile(&tensors, &mut |_| Ok(()))?) {
             least.time = least.time.min(new.time);
         }
     }
-    let total: f64 = least.iter().map(|layer| layer.time.as_secs_f64()).sum();
-    println!("# {file}: {:.3} ms, arena {} KiB", 1e3 * total, executor.arena_bytes() >> 10);
-    least.sort_by_key(|layer| std::cmp::Reverse(layer.time));
-    for layer in least.iter().take(25) {
-        println!(
-            "{:>9.1} us {:5.1} % {} {}",
-            1e6 * layer.time.as_secs_f64(),
-            100.0 * layer.time.as_secs_f64() / total,
-            layer.operator,
-            layer.name
-        );
-    }
-    Ok(())
+    Ok(least)
 }
 
 struct Opened {
@@ -179,6 +188,11 @@ fn compare(
                 .times
                 .first()
                 .map_or(1, |first| (1.0 / first.max(1e-3)).ceil().clamp(1.0, 50.0) as usize);
+            // Threads of the other side spin for a while after its turn; none is timed before they sleep.
+            let begun = Instant::now();
+            while begun.elapsed() < SETTLING {
+                session.run(&inputs, |_| Ok(()))?;
+            }
             let start = seconds(options.threads);
             for _ in 0..runs {
                 session.run(&inputs, |_| Ok(()))?;

@@ -12,6 +12,8 @@ use crate::unary::Unary;
 const PARALLEL_FROM: usize = 1 << 17;
 /// Numbers of the input that a piece reads: they stay in the L2 cache while all weights pass.
 const PIECE_INPUT: usize = 1 << 16;
+/// Multiplications of a piece, where there are more pieces than 4 per thread.
+const PIECE_PRODUCTS: usize = 1 << 21;
 /// Pixels whose sums are stored before the rest of the work on them: they stay in the L1 cache.
 const FINISHED: usize = 72;
 const ZEROS: usize = 4096;
@@ -114,9 +116,13 @@ fn run(conv: &Convolution, compute: &Compute, x: &[f32], residual: Option<&[f32]
     let isa = conv.filters.isa();
     // SAFETY: `Convolution::run` has checked all sizes; pieces do not overlap.
     let work = |piece| unsafe { dispatch_piece(isa, &job, piece) };
+    if products(conv) < PARALLEL_FROM { (0..pieces).for_each(work) } else { compute.pool().run(pieces, work) }
+}
+
+/// Returns the number of multiplications.
+fn products(conv: &Convolution) -> usize {
     let [height, width] = conv.window.output;
-    let products = conv.batch * height * width * conv.filters.depth() * conv.filters.outputs();
-    if products < PARALLEL_FROM { (0..pieces).for_each(work) } else { compute.pool().run(pieces, work) }
+    conv.batch * height * width * conv.filters.depth() * conv.filters.outputs()
 }
 
 fn divide(conv: &Convolution, threads: usize) -> Job<'_> {
@@ -145,7 +151,9 @@ fn divide(conv: &Convolution, threads: usize) -> Job<'_> {
         job.panels = panels.div_ceil(threads * (panels / threads).min(4));
         job.shares = panels.div_ceil(job.panels);
     }
-    let wanted = if job.shares > 1 || threads == 1 { 1 } else { 4 * threads };
+    // Many pieces end at the same time on all threads, but each costs as much to begin as some of its products.
+    let pieces = (products(conv) / PIECE_PRODUCTS).clamp(4 * threads, 16 * threads);
+    let wanted = if job.shares > 1 || threads == 1 { 1 } else { pieces };
     let tile = 24;
     if height == 1 {
         let most = output_pixels.min(width.div_ceil(wanted)).max(tile);
