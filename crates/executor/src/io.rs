@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{Arena, Compute, LayerCost, Number, Region, Rest, Written};
+use opendr_kernels::{Arena, Compute, DepthwiseConvolution, LayerCost, Number, Region, Rest, Written};
 
 use crate::constant::Constant;
 use crate::tensor::{Data, Tensor};
@@ -97,5 +97,10 @@ pub(crate) trait Kernel: Send + Sync {
     /// Returns the arithmetic of products, and the bytes of weights that are not among the inputs.
     fn cost(&self) -> LayerCost {
         LayerCost::default()
+    }
+
+    /// Returns the depthwise convolution that the kernel computes, if it does.
+    fn depthwise(&self) -> Option<&DepthwiseConvolution> {
+        None
     }
 }

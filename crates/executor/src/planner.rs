@@ -124,6 +124,13 @@ impl<'a> Planner<'a> {
         if self.varying.get() { make() } else { self.graph.packed((self.node, variant), make) }
     }
 
+    /// Returns the step that computes a value, if only one node reads its name.
+    pub(crate) fn step_for_one_reader(&self, id: Id, name: &str) -> Option<&Step> {
+        let Source::Buffer(buffer, 0) = self.values[id].source else { return None };
+        self.graph.only_reader(name)?;
+        self.steps.iter().rev().find(|step| step.buffer == buffer)
+    }
+
     /// Gives a name to a value, unless it has one.
     pub(crate) fn name(&mut self, name: &str, id: Id) {
         self.names.entry(name.to_owned()).or_insert(id);

@@ -15,6 +15,7 @@ pub(crate) type ThreadBuffer = LocalKey<RefCell<AlignedBuffer>>;
 thread_local! {
     pub(crate) static LEFT_PANELS: RefCell<AlignedBuffer> = RefCell::default();
     pub(crate) static RIGHT_PANELS: RefCell<AlignedBuffer> = RefCell::default();
+    pub(crate) static BANDS: RefCell<AlignedBuffer> = RefCell::default();
     pub(crate) static PATCHES: RefCell<AlignedBuffer> = RefCell::default();
     pub(crate) static PATCH_GRADIENTS: RefCell<AlignedBuffer> = RefCell::default();
 }

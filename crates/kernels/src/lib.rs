@@ -58,7 +58,9 @@ pub use arena::{ALIGNMENT, Arena, Number, Region, Rest, Written};
 pub use binary::{Binary, Operand};
 pub use column_sums::add_column_sums;
 pub use compute::Compute;
-pub use conv::{Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, Strides, Window};
+pub use conv::{
+    Convolution, DepthwiseConvolution, DepthwiseFilters, DepthwisePointwise, Filters, Finish, Strides, Window,
+};
 pub use cost::LayerCost;
 pub use elementary::{exp_in_place, sigmoid_in_place, tanh_in_place};
 pub use fourier::{FOURIER_FRAMES, FourierScratch, RealFourier, Spectrum};

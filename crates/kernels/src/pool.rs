@@ -172,9 +172,19 @@ impl<'a, T> Pieces<'a, T> {
     /// # Safety
     /// No piece is taken twice at the same time.
     pub(crate) unsafe fn get(&self, index: usize) -> &'a mut [T] {
-        let from = (index * self.length).min(self.total);
+        // SAFETY: passed on.
+        unsafe { self.span(index, 1) }
+    }
+
+    /// Returns `count` pieces from `first` on as one; fewer at the end.
+    ///
+    /// # Safety
+    /// As [`Pieces::get`].
+    pub(crate) unsafe fn span(&self, first: usize, count: usize) -> &'a mut [T] {
+        let from = (first * self.length).min(self.total);
+        let length = (count * self.length).min(self.total - from);
         // SAFETY: pieces lie within the slice and do not overlap.
-        unsafe { std::slice::from_raw_parts_mut(self.start.add(from), self.length.min(self.total - from)) }
+        unsafe { std::slice::from_raw_parts_mut(self.start.add(from), length) }
     }
 }
 

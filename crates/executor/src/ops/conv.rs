@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use opendr_engine::Result;
 use opendr_kernels::{
-    Convolution, DepthwiseConvolution, DepthwiseFilters, Filters, Finish, LayerCost, Strides, Window,
+    Convolution, DepthwiseConvolution, DepthwiseFilters, DepthwisePointwise, Filters, Finish, LayerCost,
+    Strides, Window,
 };
 use opendr_onnx::proto::NodeProto;
 
@@ -156,8 +157,17 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
         Some(residual) => Some(planner.channels_last(residual)?),
         None => None,
     };
-    let ids =
-        planner.emit(ConvStep(conv), &[Some(x), residual], &[(Kind::F32, shape, Layout::ChannelsLast)])?;
+    let output = [(Kind::F32, shape, Layout::ChannelsLast)];
+    let name = node.input.first().map_or("", String::as_str);
+    let pair = planner.step_for_one_reader(x, name).and_then(|step| {
+        let pair = DepthwisePointwise::new(step.kernel.depthwise()?, &conv)?;
+        Some((pair, step.reads.first().copied().flatten()?))
+    });
+    let ids = match pair {
+        // The depthwise convolution has a step of its own no longer, as nothing reads it.
+        Some((pair, x)) => planner.emit(PairStep(pair), &[Some(x), residual], &output)?,
+        None => planner.emit(ConvStep(conv), &[Some(x), residual], &output)?,
+    };
     if let Some(&y) = ids.first() {
         fused.absorb(planner, y);
     }
@@ -208,6 +218,25 @@ impl Kernel for DepthwiseStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
         let x = io.read::<f32>(0);
         self.0.run(io.compute, x, io.write());
+        Ok(())
+    }
+
+    fn cost(&self) -> LayerCost {
+        self.0.cost()
+    }
+
+    fn depthwise(&self) -> Option<&DepthwiseConvolution> {
+        Some(&self.0)
+    }
+}
+
+struct PairStep(DepthwisePointwise);
+
+impl Kernel for PairStep {
+    fn run(&self, io: &mut Io<'_>) -> Result<()> {
+        let x = io.read::<f32>(0);
+        let residual = io.has(1).then(|| io.read::<f32>(1));
+        self.0.run(io.compute, x, residual, io.write());
         Ok(())
     }
 

@@ -9,6 +9,7 @@ mod einsum;
 mod graphs;
 mod hostile;
 mod integers;
+mod layouts;
 mod operators;
 mod threads;
 

@@ -96,72 +96,95 @@ impl DepthwiseConvolution {
     /// # Panics
     /// When the slices are shorter than the shapes and strides require.
     pub fn run(&self, compute: &Compute, x: &[f32], y: &mut [f32]) {
-        let Self { filters, window, batch, x: x_strides, y: y_strides, finish } = self;
-        let (batch, x_strides, y_strides) = (*batch, *x_strides, *y_strides);
-        if batch == 0 || window.output.contains(&0) || filters.channels == 0 {
+        if self.is_empty() {
             return;
         }
-        let reach = |at: Strides, [height, width]: [usize; 2]| {
-            (batch - 1) * at.image
-                + height.saturating_sub(1) * at.row
-                + width.saturating_sub(1) * at.pixel
-                + filters.channels
-        };
+        self.check(x);
+        assert!(y.len() >= self.reach(self.y, self.window.output), "the output is too short");
+        let threads = compute.pool().threads();
+        let rows = self.window.output[0].div_ceil(if threads == 1 { 1 } else { 4 * threads }).max(1);
+        let job = Job { y: y.as_mut_ptr(), ..self.job(x, rows) };
+        let isa: Isa = compute.isa();
+        // SAFETY: sizes have been checked; pieces write disjoint rows.
+        let work = |piece| unsafe { job.run(isa, piece) };
+        if self.products() < 1 << 15 {
+            (0..job.pieces()).for_each(work)
+        } else {
+            compute.pool().run(job.pieces(), work)
+        }
+    }
+
+    /// Returns whether the output has no elements.
+    pub(super) fn is_empty(&self) -> bool {
+        self.batch == 0 || self.window.output.contains(&0) || self.filters.channels == 0
+    }
+
+    /// Returns the number of multiplications.
+    fn products(&self) -> usize {
+        let [height, width] = self.window.output;
+        let kernel = self.filters.kernel;
+        self.batch * height * width * self.filters.channels * kernel[0] * kernel[1]
+    }
+
+    fn reach(&self, at: Strides, [height, width]: [usize; 2]) -> usize {
+        (self.batch - 1) * at.image
+            + height.saturating_sub(1) * at.row
+            + width.saturating_sub(1) * at.pixel
+            + self.filters.channels
+    }
+
+    /// Panics where the input, filters and strides do not fit.
+    pub(super) fn check(&self, x: &[f32]) {
+        let Self { filters, window, x: x_strides, y: y_strides, finish, .. } = self;
         assert_eq!(x_strides.channel, 1, "the channels of the input must lie side by side");
         assert_eq!(filters.kernel, window.kernel, "the filters must have the size of the kernel");
         y_strides.check_written(window.output, filters.channels);
-        assert!(
-            window.input.contains(&0) || x.len() >= reach(x_strides, window.input),
-            "the input is too short"
-        );
-        assert!(y.len() >= reach(y_strides, window.output), "the output is too short");
+        let is_long = window.input.contains(&0) || x.len() >= self.reach(*x_strides, window.input);
+        assert!(is_long, "the input is too short");
         if let Some(slopes) = &finish.slopes {
             assert!(slopes.len() >= filters.padded, "one slope per channel, rounded up");
         }
-        let [height, width] = window.output;
-        let threads = compute.pool().threads();
-        let rows = height.div_ceil(if threads == 1 { 1 } else { 4 * threads }).max(1);
-        let down = height.div_ceil(rows);
+    }
+
+    /// Divides the output into pieces of `rows` rows.
+    pub(super) fn job<'a>(&'a self, x: &'a [f32], rows: usize) -> Job<'a> {
         let all = [f32::NEG_INFINITY, f32::INFINITY];
-        let (clamp, then) = match finish.activation {
-            _ if finish.slopes.is_some() => (all, Unary::Identity),
+        let (clamp, then) = match self.finish.activation {
+            _ if self.finish.slopes.is_some() => (all, Unary::Identity),
             Unary::Relu => ([0.0, f32::INFINITY], Unary::Identity),
             Unary::Clip { low, high } => ([low, high], Unary::Identity),
             other => (all, other),
         };
-        let job = Job {
+        let Self { filters, window, batch, x: x_strides, y: y_strides, finish } = self;
+        Job {
             filters,
             window,
             finish,
-            x_strides,
-            y_strides,
+            batch: *batch,
+            x_strides: *x_strides,
+            y_strides: *y_strides,
             x: x.as_ptr(),
-            y: y.as_mut_ptr(),
+            y: std::ptr::null_mut(),
             rows,
-            down,
+            down: window.output[0].div_ceil(rows),
             clamp,
             then,
-        };
-        let isa: Isa = compute.isa();
-        // SAFETY: sizes have been checked; pieces write disjoint rows.
-        let work = |piece| unsafe { dispatch_rows(isa, &job, piece) };
-        let products = batch * height * width * filters.channels * filters.kernel[0] * filters.kernel[1];
-        if products < 1 << 15 {
-            (0..batch * down).for_each(work)
-        } else {
-            compute.pool().run(batch * down, work)
         }
     }
 }
 
-struct Job<'a> {
+/// A convolution in pieces of rows.
+#[derive(Clone, Copy)]
+pub(super) struct Job<'a> {
     filters: &'a DepthwiseFilters,
     window: &'a Window,
     finish: &'a Finish,
+    batch: usize,
     x_strides: Strides,
     y_strides: Strides,
     x: *const f32,
     y: *mut f32,
+    /// Rows of a piece, and pieces of an image.
     rows: usize,
     down: usize,
     clamp: [f32; 2],
@@ -172,13 +195,46 @@ struct Job<'a> {
 // SAFETY: pieces read the inputs and write disjoint rows of the output.
 unsafe impl Sync for Job<'_> {}
 
+impl Job<'_> {
+    pub(super) fn pieces(&self) -> usize {
+        self.batch * self.down
+    }
+
+    /// Returns the image of a piece, and its rows.
+    pub(super) fn rows(&self, piece: usize) -> (usize, std::ops::Range<usize>) {
+        let first = piece % self.down * self.rows;
+        (piece / self.down, first..(first + self.rows).min(self.window.output[0]))
+    }
+
+    /// Computes a piece.
+    ///
+    /// # Safety
+    /// The sizes have been checked; nothing else uses the rows of the piece.
+    unsafe fn run(&self, isa: Isa, piece: usize) {
+        // SAFETY: passed on.
+        unsafe { dispatch_rows(isa, self, piece) }
+    }
+
+    /// Computes the rows of a piece to `y`, as they would follow each other in the output.
+    ///
+    /// # Safety
+    /// The input has been checked; `y` has the length of the rows.
+    pub(super) unsafe fn run_to(&self, isa: Isa, piece: usize, y: &mut [f32]) {
+        let (image, rows) = self.rows(piece);
+        let before = image * self.y_strides.image + rows.start * self.y_strides.row;
+        let job = Self { y: y.as_mut_ptr().wrapping_sub(before), ..*self };
+        // SAFETY: the rows of the piece lie in `y`.
+        unsafe { job.run(isa, piece) }
+    }
+}
+
 for_every_isa!(fn dispatch_rows = rows_of_piece(job: &Job<'_>, piece: usize));
 
 #[inline(always)]
 unsafe fn rows_of_piece<V: Lanes>(job: &Job<'_>, piece: usize) {
     let window = job.window;
-    let (image, down) = (piece / job.down, piece % job.down);
-    for oy in down * job.rows..((down + 1) * job.rows).min(window.output[0]) {
+    let (image, rows) = job.rows(piece);
+    for oy in rows {
         // SAFETY: passed on.
         unsafe {
             match (window.kernel[1], window.strides[1], window.dilations[1]) {
@@ -190,7 +246,7 @@ unsafe fn rows_of_piece<V: Lanes>(job: &Job<'_>, piece: usize) {
                 _ => row::<V, 0, 0>(job, image, oy),
             }
             if job.then != Unary::Identity {
-                let y = job.y.add(image * job.y_strides.image + oy * job.y_strides.row);
+                let y = job.y.wrapping_add(image * job.y_strides.image + oy * job.y_strides.row);
                 let (pixels, channels) = (window.output[1], job.filters.channels);
                 if job.y_strides.pixel == channels {
                     unary_all::<V>(job.then, y, y, pixels * channels);
@@ -243,7 +299,7 @@ unsafe fn row<V: Lanes, const K: usize, const S: usize>(job: &Job<'_>, image: us
             job,
             x: job.x.wrapping_add(x),
             x_row: window.dilations[0] * job.x_strides.row,
-            y: job.y.add(image * job.y_strides.image + oy * job.y_strides.row),
+            y: job.y.wrapping_add(image * job.y_strides.image + oy * job.y_strides.row),
             taps,
             slopes: job.finish.slopes.as_ref().map_or(std::ptr::null(), |slopes| slopes.as_ptr()),
         };

@@ -6,6 +6,7 @@
 mod depthwise;
 mod filters;
 mod geometry;
+mod pair;
 mod piece;
 #[cfg(test)]
 mod tests;
@@ -14,3 +15,4 @@ mod tile;
 pub use depthwise::{DepthwiseConvolution, DepthwiseFilters};
 pub use filters::Filters;
 pub use geometry::{Convolution, Finish, Strides, Window};
+pub use pair::DepthwisePointwise;

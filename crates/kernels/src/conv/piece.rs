@@ -6,6 +6,7 @@ use super::tile::{Row, finish, most_pixels, planar_tile, tile};
 use crate::compute::Compute;
 use crate::isa::for_every_isa;
 use crate::lanes::Lanes;
+use crate::pool::WorkerPool;
 use crate::unary::Unary;
 
 /// Number of multiplications from which on several threads are used.
@@ -75,11 +76,18 @@ impl Convolution {
         if let Some(slopes) = &self.finish.slopes {
             assert!(slopes.len() >= filters.padded_outputs(), "one slope per output channel, rounded up");
         }
-        run(self, compute, x, residual, y);
+        run(self, Some(compute.pool()), x, residual, y);
     }
 }
 
-fn run(conv: &Convolution, compute: &Compute, x: &[f32], residual: Option<&[f32]>, y: &mut [f32]) {
+/// Computes a convolution whose sizes have been checked, on the threads of a pool, or on this one.
+pub(super) fn run(
+    conv: &Convolution,
+    pool: Option<&WorkerPool>,
+    x: &[f32],
+    residual: Option<&[f32]>,
+    y: &mut [f32],
+) {
     let mut flat;
     let mut conv = conv;
     let window = conv.window;
@@ -107,7 +115,7 @@ fn run(conv: &Convolution, compute: &Compute, x: &[f32], residual: Option<&[f32]
     } else {
         Vec::new()
     };
-    let mut job = divide(conv, compute.pool().threads());
+    let mut job = divide(conv, pool.map_or(1, WorkerPool::threads));
     job.x = x.as_ptr();
     job.y = y.as_mut_ptr();
     job.residual = residual.map_or(std::ptr::null(), <[f32]>::as_ptr);
@@ -116,7 +124,10 @@ fn run(conv: &Convolution, compute: &Compute, x: &[f32], residual: Option<&[f32]
     let isa = conv.filters.isa();
     // SAFETY: `Convolution::run` has checked all sizes; pieces do not overlap.
     let work = |piece| unsafe { dispatch_piece(isa, &job, piece) };
-    if products(conv) < PARALLEL_FROM { (0..pieces).for_each(work) } else { compute.pool().run(pieces, work) }
+    match pool.filter(|_| products(conv) >= PARALLEL_FROM) {
+        Some(pool) => pool.run(pieces, work),
+        None => (0..pieces).for_each(work),
+    }
 }
 
 /// Returns the number of multiplications.

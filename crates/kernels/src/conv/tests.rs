@@ -229,3 +229,63 @@ fn what_is_not_a_number_reaches_the_outputs_that_read_it() {
         assert!(y[4].is_infinite(), "{y:?}");
     }
 }
+
+#[test]
+fn a_pair_of_convolutions_equals_one_after_the_other() {
+    let mut random = Random::new(3);
+    for case in 0..12 {
+        let batch = 1 + case % 2;
+        let (inner, outer) = (pick(&mut random, 20, 40), pick(&mut random, 1, 70));
+        let (side, step) = (pick(&mut random, 45, 60), 1 + case % 2);
+        let input = [side * step, (side + 3) * step];
+        let window = Window {
+            kernel: [3; 2],
+            strides: [step; 2],
+            dilations: [1; 2],
+            pads: [1; 2],
+            input,
+            output: [side, side + 3],
+        };
+        let x = numbers(&mut random, batch * input[0] * input[1] * inner);
+        let taps = numbers(&mut random, inner * 9);
+        let weights = numbers(&mut random, outer * inner);
+        let bias = numbers(&mut random, outer);
+        let residual = numbers(&mut random, batch * side * (side + 3) * outer);
+        for compute in computes() {
+            let between = Strides::channels_last(window.output, inner);
+            let depthwise = DepthwiseConvolution {
+                filters: Arc::new(DepthwiseFilters::new(&taps, inner, window.kernel, None)),
+                window,
+                batch,
+                x: Strides::channels_last(input, inner),
+                y: between,
+                finish: Finish { activation: Unary::Relu, ..Finish::default() },
+            };
+            let filters = Filters::from_matrix(&compute, &weights, [inner, outer], true, Some(&bias));
+            let y_strides = Strides::channels_last(window.output, outer);
+            let one =
+                Window { kernel: [1; 2], strides: [1; 2], pads: [0; 2], input: window.output, ..window };
+            let pointwise = Convolution {
+                filters: Arc::new(filters),
+                window: one,
+                batch,
+                x: between,
+                y: y_strides,
+                residual: y_strides,
+                finish: Finish { activation: Unary::Relu, slopes: None, residual_last: case % 3 == 0 },
+            };
+            let residual = (case % 4 > 0).then_some(residual.as_slice());
+            let mut apart = vec![0.0; batch * between.image];
+            let mut wanted = vec![f32::NAN; batch * y_strides.image];
+            depthwise.run(&compute, &x, &mut apart);
+            pointwise.run(&compute, &apart, residual, &mut wanted);
+            let pair = DepthwisePointwise::new(&depthwise, &pointwise).unwrap();
+            let mut y = vec![f32::NAN; wanted.len()];
+            pair.run(&compute, &x, residual, &mut y);
+            assert!(y.iter().zip(&wanted).all(|(a, b)| a.to_bits() == b.to_bits()), "case {case}");
+            // Not the image that the first one writes.
+            let other = Convolution { batch: batch + 1, ..pointwise };
+            assert!(DepthwisePointwise::new(&depthwise, &other).is_none());
+        }
+    }
+}
