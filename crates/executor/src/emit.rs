@@ -47,6 +47,7 @@ impl Planner<'_> {
             kernel: Box::new(kernel),
             reads: reads.to_vec(),
             buffer,
+            written: sizes.iter().sum(),
             sizes,
             node: self.branching.unwrap_or(self.node),
         });
@@ -107,6 +108,32 @@ impl Planner<'_> {
         let reads: Vec<Option<Id>> = reads.iter().copied().map(Some).collect();
         let ids = self.emit(kernel, &reads, &[(kind, shape, layout)])?;
         ids.first().copied().ok_or_else(|| Error::internal("a step without an output"))
+    }
+
+    /// Adds images of floats with channels last, of which these steps write parts.
+    pub(crate) fn add_joined(&mut self, steps: &[usize], shape: &[usize]) -> Result<Id> {
+        let bytes = count(shape)? * Kind::F32.bytes();
+        let buffer = self.buffers.len();
+        self.buffers.push(bytes.next_multiple_of(ALIGNMENT));
+        for &step in steps {
+            let step = &mut self.steps[step];
+            (step.buffer, step.sizes) = (buffer, vec![bytes]);
+        }
+        Ok(self.add(Kind::F32, shape.to_vec(), Layout::ChannelsLast, Source::Buffer(buffer, 0)))
+    }
+
+    /// Adds a step that writes a part of a value.
+    pub(crate) fn emit_part(&mut self, kernel: impl Kernel + 'static, reads: &[Id], whole: Id) {
+        let Source::Buffer(buffer, _) = self.values[whole].source else { return };
+        let bytes = |id: Id| self.values[id].shape.iter().product::<usize>() * self.values[id].kind.bytes();
+        self.steps.push(Step {
+            kernel: Box::new(kernel),
+            reads: reads.iter().copied().map(Some).collect(),
+            buffer,
+            written: reads.iter().map(|&id| bytes(id)).sum(),
+            sizes: vec![bytes(whole)],
+            node: self.branching.unwrap_or(self.node),
+        });
     }
 
     /// Returns the same elements, in the same order of memory, with another shape.

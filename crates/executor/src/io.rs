@@ -99,6 +99,12 @@ pub(crate) trait Kernel: Send + Sync {
         LayerCost::default()
     }
 
+    /// Makes the kernel write its output to the channels from `first` on of images with `channels` channels, which lie last. Returns
+    /// whether it can.
+    fn widen(&mut self, _channels: usize, _first: usize) -> bool {
+        false
+    }
+
     /// Returns the depthwise convolution that the kernel computes, if it does.
     fn depthwise(&self) -> Option<&DepthwiseConvolution> {
         None

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use opendr_engine::Result;
+use opendr_engine::{Error, Result};
 use opendr_kernels::{Arena, Compute, LayerCost, Region};
 
 use crate::constant::{Constant, Given, MAX_BYTES, too_many};
@@ -18,6 +18,8 @@ pub(crate) struct PlannedStep {
     reads: Vec<Place>,
     write: Region,
     sizes: Vec<usize>,
+    /// Bytes that the step writes.
+    written: usize,
     pub(crate) node: usize,
 }
 
@@ -25,8 +27,7 @@ impl PlannedStep {
     /// Returns the arithmetic and weights, and the bytes of the tensors that the step reads and writes.
     pub(crate) fn cost(&self, inputs: &[Tensor<'_>]) -> (LayerCost, u64) {
         let read: usize = self.reads.iter().map(|place| place.bytes(inputs)).sum();
-        let written: usize = self.sizes.iter().sum();
-        (self.kernel.cost(), (read + written) as u64)
+        (self.kernel.cost(), (read + self.written) as u64)
     }
 }
 
@@ -99,11 +100,17 @@ impl Plan {
             if lives[step.buffer].is_none() {
                 continue;
             }
+            let is_unwritten =
+                |id: &Id| matches!(values[*id].source, Source::Buffer(buffer, _) if lives[buffer].is_none());
+            if step.reads.iter().flatten().any(is_unwritten) {
+                return Err(Error::internal("a step reads what none writes"));
+            }
             steps.push(PlannedStep {
                 reads: step.reads.iter().map(|id| id.map_or(Place::Absent, &place)).collect(),
                 write: Region { start: starts[step.buffer], bytes: planner.buffers[step.buffer] },
                 kernel: step.kernel,
                 sizes: step.sizes,
+                written: step.written,
                 node: step.node,
             });
         }

@@ -20,6 +20,8 @@ pub(crate) struct Step {
     pub(crate) reads: Vec<Option<Id>>,
     pub(crate) buffer: usize,
     pub(crate) sizes: Vec<usize>,
+    /// Bytes that the step writes.
+    pub(crate) written: usize,
     /// Index of the node.
     pub(crate) node: usize,
 }
@@ -129,6 +131,28 @@ impl<'a> Planner<'a> {
         let Source::Buffer(buffer, 0) = self.values[id].source else { return None };
         self.graph.only_reader(name)?;
         self.steps.iter().rev().find(|step| step.buffer == buffer)
+    }
+
+    /// Returns the index of the step that computes a value with channels last, if only this node reads the value.
+    pub(crate) fn only_step(&self, id: Id) -> Option<usize> {
+        let value = &self.values[id];
+        let Source::Buffer(buffer, 0) = value.source else { return None };
+        let is_of_buffer =
+            |id: Id| matches!(self.values[id].source, Source::Buffer(other, _) if other == buffer);
+        let is_read = self.steps.iter().flat_map(|step| &step.reads).flatten().any(|&id| is_of_buffer(id));
+        let is_own = |reader: &usize| *reader == self.node || self.is_fused(*reader);
+        let mut names = self.names.iter().filter(|(_, id)| is_of_buffer(**id));
+        let is_only_here = names.all(|(name, _)| {
+            self.graph.readers.get(name).is_none_or(|readers| {
+                readers.iter().all(is_own)
+                    && readers.iter().filter(|&&reader| reader == self.node).count() <= 1
+            })
+        });
+        if is_read || !is_only_here || self.branching.is_some() || value.layout != Layout::ChannelsLast {
+            return None;
+        }
+        let mut writers = (0..self.steps.len()).filter(|&step| self.steps[step].buffer == buffer);
+        writers.next().filter(|_| writers.next().is_none())
     }
 
     /// Gives a name to a value, unless it has one.

@@ -39,6 +39,8 @@ struct State {
     work: Option<Work>,
     works: u64,
     stop: bool,
+    /// Number of workers that wait for the signal.
+    sleeping: usize,
 }
 
 /// The current work. The pointers are valid until the last worker has finished, which [`WorkerPool::run`] waits for.
@@ -70,7 +72,7 @@ impl WorkerPool {
     /// create a thread, the pool has fewer.
     pub fn new(threads: usize) -> Self {
         let shared = Arc::new(Shared {
-            state: Mutex::new(State { work: None, works: 0, stop: false }),
+            state: Mutex::new(State { work: None, works: 0, stop: false, sleeping: 0 }),
             wake: Condvar::new(),
             left: Condvar::new(),
             works: AtomicU64::new(0),
@@ -194,8 +196,11 @@ impl Shared {
         state.work = Some(work);
         state.works += 1;
         self.works.store(state.works, Ordering::Release);
+        let is_awaited = state.sleeping > 0;
         drop(state);
-        self.wake.notify_all();
+        if is_awaited {
+            self.wake.notify_all();
+        }
     }
 
     /// Prevents workers from starting, and waits for those at work.
@@ -247,7 +252,9 @@ impl Shared {
                     return Some(work);
                 }
             }
+            state.sleeping += 1;
             state = self.wake.wait(state).unwrap_or_else(PoisonError::into_inner);
+            state.sleeping -= 1;
         }
     }
 }

@@ -4,9 +4,9 @@ use opendr_engine::Result;
 use opendr_onnx::proto::{AttributeProto, NodeProto};
 
 use super::broadcast::Rows;
+use super::concat::concat;
 use super::inputs::{optional, required};
 use super::matmul::batched;
-use super::movement::concat;
 use crate::attributes::Attributes;
 use crate::io::{Io, Kernel};
 use crate::planner::{Id, Layout, Planner};

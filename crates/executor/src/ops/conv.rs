@@ -116,15 +116,21 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
         });
         let Packed::Depthwise(filters) = filters else { return Err(node.refused("weights of two kinds")) };
         let finish = finish(&fused, |slopes| filters.padded(slopes));
-        let step = DepthwiseStep(DepthwiseConvolution {
+        let conv = DepthwiseConvolution {
             filters,
             window,
             batch: dims[0],
             x: Strides::channels_last(window.input, outputs),
             y: Strides::channels_last(window.output, outputs),
             finish,
-        });
-        let y = planner.emit_one(step, &[x], Kind::F32, shape, Layout::ChannelsLast)?;
+        };
+        let y = planner.emit_one(
+            DepthwiseStep { conv, first: 0 },
+            &[x],
+            Kind::F32,
+            shape,
+            Layout::ChannelsLast,
+        )?;
         fused.absorb(planner, y);
         return Ok(vec![y]);
     }
@@ -165,8 +171,8 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
     });
     let ids = match pair {
         // The depthwise convolution has a step of its own no longer, as nothing reads it.
-        Some((pair, x)) => planner.emit(PairStep(pair), &[Some(x), residual], &output)?,
-        None => planner.emit(ConvStep(conv), &[Some(x), residual], &output)?,
+        Some((pair, x)) => planner.emit(PairStep { pair, first: 0 }, &[Some(x), residual], &output)?,
+        None => planner.emit(ConvStep::new(conv), &[Some(x), residual], &output)?,
     };
     if let Some(&y) = ids.first() {
         fused.absorb(planner, y);
@@ -197,50 +203,88 @@ pub(super) fn finish(fused: &Fused, padded: impl Fn(&[f32]) -> Vec<f32>) -> Fini
     }
 }
 
-pub(super) struct ConvStep(pub(super) Convolution);
+/// A step whose output may lie in some of the channels of wider images.
+pub(super) struct ConvStep {
+    conv: Convolution,
+    first: usize,
+}
+
+impl ConvStep {
+    pub(super) fn new(conv: Convolution) -> Self {
+        Self { conv, first: 0 }
+    }
+}
 
 impl Kernel for ConvStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
         let x = io.read::<f32>(0);
         let residual = io.has(1).then(|| io.read::<f32>(1));
-        self.0.run(io.compute, x, residual, io.write());
+        self.conv.run(io.compute, x, residual, &mut io.write()[self.first..]);
         Ok(())
     }
 
     fn cost(&self) -> LayerCost {
-        self.0.cost()
+        self.conv.cost()
+    }
+
+    fn widen(&mut self, channels: usize, first: usize) -> bool {
+        let (output, y) = (self.conv.window.output, &mut self.conv.y);
+        let is_whole = *y == Strides::channels_last(output, self.conv.filters.outputs());
+        if is_whole {
+            *y = Strides::channels_last(output, channels);
+            self.first = first;
+        }
+        is_whole
     }
 }
 
-struct DepthwiseStep(DepthwiseConvolution);
+struct DepthwiseStep {
+    conv: DepthwiseConvolution,
+    first: usize,
+}
 
 impl Kernel for DepthwiseStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
         let x = io.read::<f32>(0);
-        self.0.run(io.compute, x, io.write());
+        self.conv.run(io.compute, x, &mut io.write()[self.first..]);
         Ok(())
     }
 
     fn cost(&self) -> LayerCost {
-        self.0.cost()
+        self.conv.cost()
+    }
+
+    fn widen(&mut self, channels: usize, first: usize) -> bool {
+        self.conv.y = Strides::channels_last(self.conv.window.output, channels);
+        self.first = first;
+        true
     }
 
     fn depthwise(&self) -> Option<&DepthwiseConvolution> {
-        Some(&self.0)
+        Some(&self.conv)
     }
 }
 
-struct PairStep(DepthwisePointwise);
+struct PairStep {
+    pair: DepthwisePointwise,
+    first: usize,
+}
 
 impl Kernel for PairStep {
     fn run(&self, io: &mut Io<'_>) -> Result<()> {
         let x = io.read::<f32>(0);
         let residual = io.has(1).then(|| io.read::<f32>(1));
-        self.0.run(io.compute, x, residual, io.write());
+        self.pair.run(io.compute, x, residual, &mut io.write()[self.first..]);
         Ok(())
     }
 
     fn cost(&self) -> LayerCost {
-        self.0.cost()
+        self.pair.cost()
+    }
+
+    fn widen(&mut self, channels: usize, first: usize) -> bool {
+        self.pair.widen(channels);
+        self.first = first;
+        true
     }
 }

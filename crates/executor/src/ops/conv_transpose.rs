@@ -351,7 +351,7 @@ fn by_products(
         finish: Finish::default(),
     };
     let products = planner.emit_one(
-        ConvStep(conv),
+        ConvStep::new(conv),
         &[x],
         Kind::F32,
         vec![batch, groups * columns, input[0], input[1]],

@@ -221,7 +221,8 @@ pub(super) fn with_weights(
         Some(residual) => Some(planner.plain(residual)?),
         None => None,
     };
-    let ids = planner.emit(ConvStep(conv), &[Some(a), residual], &[(Kind::F32, shape, Layout::Plain)])?;
+    let ids =
+        planner.emit(ConvStep::new(conv), &[Some(a), residual], &[(Kind::F32, shape, Layout::Plain)])?;
     let y = ids.first().copied().ok_or_else(|| node.damaged("its outputs"))?;
     fused.absorb(planner, y);
     Ok(y)
@@ -244,13 +245,13 @@ impl Kernel for ProductStep {
             Product::new().run(io.compute, a, b, MatrixMut::new(y, rows, columns));
         };
         let length = (rows * columns).max(1);
-        // Small products run side by side, as many in a piece as are worth a thread.
-        let at_once = (PIECE / (length * depth).max(1)).max(1);
+        // Small products run side by side, as many in a piece as are worth a thread; large ones use all threads themselves.
+        let at_once = PIECE / (length * depth).max(1);
         let work = |piece: usize, y: &mut [f32]| {
             let products = y.chunks_mut(length).enumerate();
             products.for_each(|(at, y)| product(piece * at_once + at, y));
         };
-        if self.left.len() > at_once {
+        if at_once > 0 && self.left.len() > at_once {
             io.compute.pool().run_on_pieces(y, at_once * length, work);
         } else {
             work(0, y);

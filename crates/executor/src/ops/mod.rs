@@ -4,6 +4,7 @@ mod attention;
 mod broadcast;
 mod bytes;
 mod cast;
+mod concat;
 mod conv;
 mod conv_integer;
 mod conv_transpose;
@@ -85,7 +86,7 @@ const OPERATORS: &[(&str, Build)] = &[
     ("Ceil", functions::build),
     ("Celu", functions::build),
     ("Clip", elementwise::clip),
-    ("Concat", movement::concat),
+    ("Concat", concat::concat),
     ("Constant", shape::constant),
     ("ConstantOfShape", shape::constant_of_shape),
     ("Conv", conv::conv),

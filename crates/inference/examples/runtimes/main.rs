@@ -112,7 +112,7 @@ fn print_layers(file: &str, bytes: &[u8]) -> Result<()> {
     println!("# {file}: {:.3} ms with one thread, {:.3} ms with two", totals[0] / 1e3, totals[1] / 1e3);
     let mut both: Vec<(&LayerProfile, &LayerProfile)> = single.iter().zip(&two).collect();
     both.sort_by_key(|(layer, _)| std::cmp::Reverse(layer.time));
-    for (layer, parallel) in both.iter().take(40) {
+    for (layer, parallel) in both.iter().take(400) {
         let share = 100.0 * micros(layer) / totals[0];
         let (operator, name) = (&layer.operator, &layer.name);
         println!("{:>9.1} us {:>9.1} us {share:5.1} % {operator} {name}", micros(layer), micros(parallel));

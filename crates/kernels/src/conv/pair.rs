@@ -41,6 +41,11 @@ impl DepthwisePointwise {
         (fits && has_bands).then(|| Self { depthwise: depthwise.clone(), pointwise: pointwise.clone() })
     }
 
+    /// Makes the pair write its output to some of the channels of wider images, which lie last.
+    pub fn widen(&mut self, channels: usize) {
+        self.pointwise.y = Strides::channels_last(self.pointwise.window.output, channels);
+    }
+
     /// Returns the arithmetic and the bytes of the weights.
     pub fn cost(&self) -> LayerCost {
         self.depthwise.cost() + self.pointwise.cost()
@@ -58,8 +63,10 @@ impl DepthwisePointwise {
         depthwise.check(x);
         let [height, width] = depthwise.window.output;
         let (inner, outer) = (pointwise.filters.channels(), pointwise.filters.outputs());
-        let length = depthwise.batch * height * width * outer;
-        let is_long = y.len() >= length && residual.is_none_or(|residual| residual.len() >= length);
+        let (pixels, total) = (depthwise.batch * height * width, pointwise.y.pixel);
+        assert!(total >= outer, "pixels of the output must lie apart");
+        let is_long = y.len() >= (pixels - 1) * total + outer
+            && residual.is_none_or(|residual| residual.len() >= pixels * outer);
         assert!(is_long, "the output or the residual is too short");
         if let Some(slopes) = &pointwise.finish.slopes {
             assert!(
@@ -70,7 +77,7 @@ impl DepthwisePointwise {
         let at_least = height.div_ceil(4 * compute.pool().threads()).max(1);
         let job = depthwise.job(x, (BAND / (width * inner)).clamp(1, at_least));
         let isa = compute.isa();
-        let lines = Pieces::new(&mut y[..length], width * outer);
+        let lines = Pieces::new(y, width * total);
         compute.pool().run(job.pieces(), |piece| {
             let (image, rows) = job.rows(piece);
             let (pixels, first) = (rows.len() * width, image * height + rows.start);
@@ -78,13 +85,12 @@ impl DepthwisePointwise {
                 // SAFETY: the input has been checked, and the buffer has the length of the rows.
                 unsafe { job.run_to(isa, piece, between) };
                 let size = [1, pixels];
-                let y = Strides::channels_last(size, outer);
                 let band = Convolution {
                     window: Window { input: size, output: size, ..pointwise.window },
                     batch: 1,
                     x: Strides::channels_last(size, inner),
-                    y,
-                    residual: y,
+                    y: Strides::channels_last(size, total),
+                    residual: Strides::channels_last(size, outer),
                     ..pointwise.clone()
                 };
                 // SAFETY: pieces write disjoint lines.
