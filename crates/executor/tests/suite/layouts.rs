@@ -158,3 +158,69 @@ fn a_depthwise_convolution_and_the_next_are_one_step_where_nothing_else_reads_be
         (0..16).map(|channel| f64::from(weights[3 * 16 + channel]) * sum(channel).max(0.0)).sum();
     assert_eq!(joined[0].1[(3 * 64 + 11) * 64 + 21], wanted);
 }
+
+#[test]
+fn parts_of_a_concatenation_are_written_in_place_where_nothing_else_reads_them() {
+    let side = 64_i64;
+    let taps: Vec<f32> = (0..144).map(|i| (i % 5) as f32 - 2.0).collect();
+    let weights: Vec<f32> = (0..128).map(|i| (i % 3) as f32 - 1.0).collect();
+    let depthwise = |from: &str, to: &str| {
+        let mut node = with_int(node("Conv", &[from, "taps"], &[to]), "group", 16);
+        node.attribute.push(opendr_onnx::proto::AttributeProto {
+            name: "pads".to_owned(),
+            ints: vec![1; 4],
+            ..Default::default()
+        });
+        node
+    };
+    let model = |outputs: &[&str]| {
+        let nodes = [
+            depthwise("x", "first"),
+            node("Conv", &["x", "w"], &["product"]),
+            node("Sigmoid", &["product"], &["second"]),
+            node("Relu", &["x"], &["third"]),
+            depthwise("third", "between"),
+            node("Conv", &["between", "w"], &["fourth"]),
+            with_int(node("Concat", &["first", "second", "third", "fourth"], &["y"]), "axis", 1),
+        ];
+        let declared = |name: &&str| {
+            let channels = match *name {
+                "y" => 48,
+                "second" | "fourth" => 8,
+                _ => 16,
+            };
+            value(name, F32, &[2, channels, side, side])
+        };
+        let outputs: Vec<_> = outputs.iter().map(declared).collect();
+        let constants = [floats("taps", &[16, 1, 3, 3], &taps), floats("w", &[8, 16, 1, 1], &weights)];
+        bytes(graph(&nodes, &[value("x", F32, &[2, 16, side, side])], &outputs, &constants))
+    };
+    let image = (side * side) as usize;
+    let x: Vec<f32> = (0..2 * 16 * image).map(|i| (i * 29 % 23) as f32 - 11.0).collect();
+    let shape = [2, 16, side as usize, side as usize];
+    for threads in [1, 2] {
+        let run_with = |outputs: &[&str]| {
+            let mut executor = Executor::open(&model(outputs), Compute::with_threads(threads)).unwrap();
+            let y = run(&mut executor, &[(&shape, Data::F32(&x))]).unwrap();
+            let input = [Tensor { shape: &shape, data: Data::F32(&x) }];
+            (y, executor.profile(&input, &mut |_| Ok(())).unwrap())
+        };
+        let (whole, steps) = run_with(&["y"]);
+        let (parts, copying) = run_with(&["y", "first", "second", "third", "fourth"]);
+        let copied = |steps: &[opendr_executor::LayerProfile]| {
+            let concat = steps.iter().find(|step| step.operator == "Concat");
+            concat.map_or(0, |step| step.tensor_bytes)
+        };
+        // Only the part that no convolution computes is copied.
+        assert_eq!(copied(&steps), 2 * 4 * 2 * 16 * image as u64);
+        assert_eq!(copied(&copying), 2 * 4 * 2 * 48 * image as u64);
+        assert_eq!(whole[0], parts[0]);
+        let joined = |at: usize| {
+            parts[1..].iter().flat_map(move |(shape, part)| {
+                let length = shape[1] * image;
+                part[at * length..(at + 1) * length].iter().copied()
+            })
+        };
+        assert!(joined(0).chain(joined(1)).eq(whole[0].1.iter().copied()));
+    }
+}
