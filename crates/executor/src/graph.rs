@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use opendr_engine::Result;
-use opendr_kernels::{ByteDepthwiseFilters, ByteFilters, DepthwiseFilters, Filters};
+use opendr_kernels::{ByteDepthwiseFilters, ByteFilters, DepthwiseFilters, Filters, WinogradFilters};
 use opendr_onnx::proto::NodeProto;
 
 use crate::constant::Constants;
@@ -16,6 +16,7 @@ use crate::tensor::Kind;
 pub(crate) enum Packed {
     Dense(Arc<Filters>),
     Depthwise(Arc<DepthwiseFilters>),
+    Winograd(Arc<WinogradFilters>),
     Bytes(Arc<ByteFilters>),
     ByteDepthwise(Arc<ByteDepthwiseFilters>),
 }

@@ -16,6 +16,7 @@ thread_local! {
     pub(crate) static LEFT_PANELS: RefCell<AlignedBuffer> = RefCell::default();
     pub(crate) static RIGHT_PANELS: RefCell<AlignedBuffer> = RefCell::default();
     pub(crate) static BANDS: RefCell<AlignedBuffer> = RefCell::default();
+    pub(crate) static SUMS: RefCell<AlignedBuffer> = RefCell::default();
     pub(crate) static PATCHES: RefCell<AlignedBuffer> = RefCell::default();
     pub(crate) static PATCH_GRADIENTS: RefCell<AlignedBuffer> = RefCell::default();
 }

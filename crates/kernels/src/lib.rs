@@ -59,7 +59,8 @@ pub use binary::{Binary, Operand};
 pub use column_sums::add_column_sums;
 pub use compute::Compute;
 pub use conv::{
-    Convolution, DepthwiseConvolution, DepthwiseFilters, DepthwisePointwise, Filters, Finish, Strides, Window,
+    Convolution, DepthwiseConvolution, DepthwiseFilters, DepthwisePointwise, Filters, Finish, Strides,
+    Window, Winograd, WinogradFilters,
 };
 pub use cost::LayerCost;
 pub use elementary::{exp_in_place, sigmoid_in_place, tanh_in_place};

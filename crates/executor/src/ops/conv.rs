@@ -5,7 +5,7 @@ use std::sync::Arc;
 use opendr_engine::Result;
 use opendr_kernels::{
     Convolution, DepthwiseConvolution, DepthwiseFilters, DepthwisePointwise, Filters, Finish, LayerCost,
-    Strides, Window,
+    Strides, Window, Winograd, WinogradFilters,
 };
 use opendr_onnx::proto::NodeProto;
 
@@ -139,6 +139,16 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
     let compute = planner.compute.clone();
     let fused = fusion::after(planner, node, &shape, fusible);
     let bias = bias.or(fused.bias.as_deref());
+    if groups == 1 && !planar && Winograd::is_faster(&window, [outputs, channels]) {
+        let filters = planner.packed(3, || {
+            Packed::Winograd(Arc::new(WinogradFilters::new(&compute, floats, [outputs, channels], bias)))
+        });
+        let Packed::Winograd(filters) = filters else { return Err(node.refused("weights of two kinds")) };
+        let finish = finish(&fused, |slopes| filters.padded(slopes));
+        let y = Strides::channels_last(window.output, outputs);
+        let conv = Winograd { filters, window, batch: dims[0], y, finish };
+        return emit_fused(planner, WinogradStep { conv, first: 0 }, x, fused, shape);
+    }
     let filters = planner.packed(1 + u8::from(planar), || {
         let sizes = [groups, outputs / groups, channels];
         Packed::Dense(Arc::new(Filters::new(&compute, floats, sizes, window.kernel, bias, planar)))
@@ -159,21 +169,31 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
         residual: y,
         finish,
     };
-    let residual = match fused.residual {
-        Some(residual) => Some(planner.channels_last(residual)?),
-        None => None,
-    };
-    let output = [(Kind::F32, shape, Layout::ChannelsLast)];
     let name = node.input.first().map_or("", String::as_str);
     let pair = planner.step_for_one_reader(x, name).and_then(|step| {
         let pair = DepthwisePointwise::new(step.kernel.depthwise()?, &conv)?;
         Some((pair, step.reads.first().copied().flatten()?))
     });
-    let ids = match pair {
-        // The depthwise convolution has a step of its own no longer, as nothing reads it.
-        Some((pair, x)) => planner.emit(PairStep { pair, first: 0 }, &[Some(x), residual], &output)?,
-        None => planner.emit(ConvStep::new(conv), &[Some(x), residual], &output)?,
+    match pair {
+        // The depthwise convolution has no step of its own then, as nothing reads it.
+        Some((pair, x)) => emit_fused(planner, PairStep { pair, first: 0 }, x, fused, shape),
+        None => emit_fused(planner, ConvStep::new(conv), x, fused, shape),
+    }
+}
+
+/// Emits a convolution of an input and what is fused into it.
+fn emit_fused(
+    planner: &mut Planner<'_>,
+    kernel: impl Kernel + 'static,
+    x: Id,
+    fused: Fused,
+    shape: Vec<usize>,
+) -> Result<Vec<Id>> {
+    let residual = match fused.residual {
+        Some(residual) => Some(planner.channels_last(residual)?),
+        None => None,
     };
+    let ids = planner.emit(kernel, &[Some(x), residual], &[(Kind::F32, shape, Layout::ChannelsLast)])?;
     if let Some(&y) = ids.first() {
         fused.absorb(planner, y);
     }
@@ -284,6 +304,30 @@ impl Kernel for PairStep {
 
     fn widen(&mut self, channels: usize, first: usize) -> bool {
         self.pair.widen(channels);
+        self.first = first;
+        true
+    }
+}
+
+struct WinogradStep {
+    conv: Winograd,
+    first: usize,
+}
+
+impl Kernel for WinogradStep {
+    fn run(&self, io: &mut Io<'_>) -> Result<()> {
+        let x = io.read::<f32>(0);
+        let residual = io.has(1).then(|| io.read::<f32>(1));
+        self.conv.run(io.compute, x, residual, &mut io.write()[self.first..]);
+        Ok(())
+    }
+
+    fn cost(&self) -> LayerCost {
+        self.conv.cost()
+    }
+
+    fn widen(&mut self, channels: usize, first: usize) -> bool {
+        self.conv.y = Strides::channels_last(self.conv.window.output, channels);
         self.first = first;
         true
     }

@@ -241,6 +241,12 @@ impl Source<'_> {
         const AT_ONCE: usize = 16;
         let stride = self.strides[0];
         let row_length = panel.len() / steps.len().max(1);
+        if stride == 1 {
+            for &(offset, step) in steps {
+                panel[step * row_length..][..used].copy_from_slice(&self.weights[offset + first..][..used]);
+            }
+            return;
+        }
         for steps in steps.chunks(AT_ONCE) {
             for output in 0..used {
                 let from = &self.weights[(first + output) * stride..];

@@ -11,8 +11,10 @@ mod piece;
 #[cfg(test)]
 mod tests;
 mod tile;
+mod winograd;
 
 pub use depthwise::{DepthwiseConvolution, DepthwiseFilters};
 pub use filters::Filters;
 pub use geometry::{Convolution, Finish, Strides, Window};
 pub use pair::DepthwisePointwise;
+pub use winograd::{Winograd, WinogradFilters};

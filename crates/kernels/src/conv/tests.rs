@@ -289,3 +289,49 @@ fn a_pair_of_convolutions_equals_one_after_the_other() {
         }
     }
 }
+
+#[test]
+fn winograd_convolutions_equal_plain_sums() {
+    let mut random = Random::new(4);
+    for case in 0..60 {
+        let (batch, outputs, channels) =
+            (pick(&mut random, 1, 2), pick(&mut random, 1, 40), pick(&mut random, 1, 40));
+        let (input, pads) = (
+            [pick(&mut random, 3, 20), pick(&mut random, 3, 30)],
+            [pick(&mut random, 0, 2), pick(&mut random, 0, 2)],
+        );
+        let output = [0, 1].map(|i| input[i] + pads[i] + case % 2 - 2);
+        let window = Window { kernel: [3; 2], strides: [1; 2], dilations: [1; 2], pads, input, output };
+        let x = numbers(&mut random, batch * input[0] * input[1] * channels);
+        let weights = numbers(&mut random, outputs * channels * 9);
+        let bias = numbers(&mut random, outputs);
+        let wanted = reference(&window, batch, [1, outputs, channels], &x, &weights, &bias);
+        let residual = numbers(&mut random, wanted.len());
+        let mut first: Option<(String, Vec<f32>)> = None;
+        for compute in computes() {
+            let filters = WinogradFilters::new(&compute, &weights, [outputs, channels], Some(&bias));
+            let conv = Winograd {
+                filters: Arc::new(filters),
+                window,
+                batch,
+                y: Strides::channels_last(output, outputs),
+                finish: Finish { activation: Unary::Relu, slopes: None, residual_last: case % 3 == 0 },
+            };
+            let mut y = vec![f32::NAN; wanted.len()];
+            conv.run(&compute, &x, Some(&residual), &mut y);
+            for (index, (&y, &wanted)) in y.iter().zip(&wanted).enumerate() {
+                let add = f64::from(residual[index]);
+                let wanted = if case % 3 == 0 { wanted.max(0.0) + add } else { (wanted + add).max(0.0) };
+                let difference = (f64::from(y) - wanted).abs();
+                assert!(difference < 2e-4, "case {case} {} {window:?}: {y} {wanted}", compute.isa());
+            }
+            let isa = compute.isa().to_string();
+            match &first {
+                Some((same, bits)) if *same == isa => {
+                    assert!(bits.iter().zip(&y).all(|(a, b)| a.to_bits() == b.to_bits()))
+                }
+                _ => first = Some((isa, y)),
+            }
+        }
+    }
+}
