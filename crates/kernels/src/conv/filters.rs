@@ -81,23 +81,18 @@ impl Filters {
         bias: Option<&[f32]>,
         planar: bool,
     ) -> Self {
-        let isa = compute.isa();
-        let width = width_of(isa);
-        let blocks = outputs.div_ceil(width);
-        let vectors = if blocks.is_multiple_of(3) || blocks > 6 { 3 } else { 2 }.min(blocks.max(1));
+        let mut filters = Self::zeros(compute, [groups, outputs, channels], kernel, bias, planar);
         let steps = source.steps(channels, kernel, planar);
-        let depth = steps.len();
-        let group_length = blocks * width * depth;
-        let panel_outputs = vectors * width;
+        let panel_outputs = filters.vectors * filters.width;
         let least = negligible(source.weights);
-        let mut panels = AlignedBuffer::default();
-        let packed = panels.take(group_length * groups);
         let pack = |group: usize, first: usize, panel: &mut [f32]| {
             let used = panel_outputs.min(outputs - first);
             source.pack(group * outputs + first, used, &steps, panel);
             flush_below(panel, least);
         };
-        let panel_length = (panel_outputs * depth).max(1);
+        let panel_length = (panel_outputs * filters.depth()).max(1);
+        let group_length = filters.group_length;
+        let packed = filters.panels.take(group_length * groups);
         if groups == 1 {
             compute.pool().run_on_pieces(packed, panel_length, |index, panel| {
                 pack(0, index * panel_outputs, panel);
@@ -108,6 +103,24 @@ impl Filters {
                 panels.for_each(|(index, panel)| pack(group, index * panel_outputs, panel));
             });
         }
+        filters
+    }
+
+    /// Creates filters whose weights are zero.
+    pub(super) fn zeros(
+        compute: &Compute,
+        [groups, outputs, channels]: [usize; 3],
+        kernel: [usize; 2],
+        bias: Option<&[f32]>,
+        planar: bool,
+    ) -> Self {
+        let isa = compute.isa();
+        let width = width_of(isa);
+        let blocks = outputs.div_ceil(width);
+        let vectors = if blocks.is_multiple_of(3) || blocks > 6 { 3 } else { 2 }.min(blocks.max(1));
+        let group_length = blocks * width * kernel[0] * kernel[1] * channels;
+        let mut panels = AlignedBuffer::default();
+        panels.take(group_length * groups);
         let padded = blocks * width;
         let mut padded_bias = vec![0.0; padded * groups];
         if let Some(bias) = bias {
@@ -129,6 +142,19 @@ impl Filters {
             panels,
             bias: padded_bias,
         }
+    }
+
+    /// Returns the weights of a panel of one group, in rows of as many numbers as its registers have.
+    pub(super) fn weights_mut(&mut self, panel: usize) -> &mut [f32] {
+        let (first, length) = (panel * self.vectors * self.width * self.depth(), self.group_length);
+        let panel_length = self.vectors * self.width * self.depth();
+        let end = (first + panel_length).min(length);
+        &mut self.panels.take(length)[first..end]
+    }
+
+    /// Returns the outputs of a panel.
+    pub(super) fn panel_outputs(&self) -> usize {
+        self.vectors * self.width
     }
 
     /// Returns the number of output channels.

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::filters::Filters;
 use super::geometry::{Convolution, Finish, Strides, Window};
 use super::piece;
-use crate::aligned::{PATCHES, SUMS, with_buffer};
+use crate::aligned::{PATCHES, SUMS, negligible, with_buffer};
 use crate::compute::Compute;
 use crate::cost::LayerCost;
 use crate::isa::{Isa, for_every_isa};
-use crate::lanes::Lanes;
+use crate::lanes::{Lanes, MAX_WIDTH};
 use crate::pool::Pieces;
 use crate::unary::Unary;
 
@@ -45,25 +45,31 @@ impl WinogradFilters {
         bias: Option<&[f32]>,
     ) -> Self {
         assert_eq!(weights.len(), 9 * outputs * channels, "the weights must have the stated shape");
-        let taps = weights.as_chunks::<9>().0;
-        let products = with_buffer(&PATCHES, PRODUCTS * outputs * channels, |matrices| {
-            // A matrix of outputs by channels for each product.
-            let rows = Pieces::new(matrices, channels);
-            compute.pool().run(outputs, |output| {
-                // SAFETY: each output has rows of its own.
+        let one = || Filters::zeros(compute, [1, outputs, channels], [1, 1], None, false);
+        let mut products: Vec<Filters> = std::iter::repeat_with(one).take(PRODUCTS).collect();
+        let least = negligible(weights);
+        for panel in 0..products[0].panel_count() {
+            let first = panel * products[0].panel_outputs();
+            let panels: Vec<Pieces<'_, f32>> = products
+                .iter_mut()
+                .map(|filters| {
+                    let weights = filters.weights_mut(panel);
+                    let row = weights.len() / channels;
+                    Pieces::new(weights, row)
+                })
+                .collect();
+            let isa = compute.isa();
+            compute.pool().run(channels, |channel| {
+                // SAFETY: each channel has rows of its own.
                 let mut rows: [&mut [f32]; PRODUCTS] =
-                    std::array::from_fn(|product| unsafe { rows.get(product * outputs + output) });
-                for (channel, taps) in taps[output * channels..][..channels].iter().enumerate() {
-                    for (row, number) in rows.iter_mut().zip(transformed_taps(taps)) {
-                        row[channel] = number;
-                    }
-                }
+                    std::array::from_fn(|product| unsafe { panels[product].get(channel) });
+                let taps = Taps { weights, outputs, channels, channel, least };
+                // SAFETY: the rows have whole registers.
+                unsafe { dispatch_taps(isa, &taps, first, &mut rows) };
             });
-            let packed =
-                |matrix| Arc::new(Filters::from_matrix(compute, matrix, [channels, outputs], true, None));
-            matrices.chunks((channels * outputs).max(1)).map(packed).collect()
-        });
-        let mut padded = vec![0.0; outputs.next_multiple_of(crate::lanes::MAX_WIDTH)];
+        }
+        let products = products.into_iter().map(Arc::new).collect();
+        let mut padded = vec![0.0; outputs.next_multiple_of(MAX_WIDTH)];
         if let Some(bias) = bias {
             assert_eq!(bias.len(), outputs, "one bias per output");
             padded[..outputs].copy_from_slice(bias);
@@ -84,21 +90,57 @@ impl WinogradFilters {
     }
 }
 
-/// Returns `G taps G^T`.
-fn transformed_taps(taps: &[f32; 9]) -> [f32; PRODUCTS] {
-    let row = |[a, b, c]: [f64; 3]| {
-        let (even, odd) = (a / 24.0 + c / 6.0, b / 12.0);
-        [a / 4.0, -(a + b + c) / 6.0, -(a - b + c) / 6.0, even + odd, even - odd, c]
-    };
-    let tap = |y: usize, x: usize| f64::from(taps[3 * y + x]);
-    let rows = [0, 1, 2].map(|y| row([tap(y, 0), tap(y, 1), tap(y, 2)]));
-    let mut all = [0.0; PRODUCTS];
-    for x in 0..SIZE {
-        for (y, value) in row([rows[0][x], rows[1][x], rows[2][x]]).into_iter().enumerate() {
-            all[y * SIZE + x] = value as f32;
+/// The taps of a channel, for all outputs.
+struct Taps<'a> {
+    weights: &'a [f32],
+    outputs: usize,
+    channels: usize,
+    channel: usize,
+    /// Magnitude below which a weight counts as zero.
+    least: f32,
+}
+
+for_every_isa!(fn dispatch_taps = transform_taps(taps: &Taps<'_>, first: usize, rows: &mut [&mut [f32]; PRODUCTS]));
+
+/// Writes `G taps G^T` of the outputs from `first` on to a row of each product.
+///
+/// # Safety
+/// The rows have whole registers.
+#[inline(always)]
+unsafe fn transform_taps<V: Lanes>(taps: &Taps<'_>, first: usize, rows: &mut [&mut [f32]; PRODUCTS]) {
+    for at in (0..rows[0].len()).step_by(V::WIDTH) {
+        // A line of the outputs for each tap.
+        let mut lines = [[0.0; MAX_WIDTH]; 9];
+        let outputs = first + at..(first + at + V::WIDTH).min(taps.outputs);
+        for (i, output) in outputs.enumerate() {
+            let from = &taps.weights[9 * (output * taps.channels + taps.channel)..][..9];
+            for (line, &weight) in lines.iter_mut().zip(from) {
+                line[i] = if weight.abs() < taps.least { 0.0 } else { weight };
+            }
+        }
+        // SAFETY: lines and rows have whole registers.
+        unsafe {
+            let tap = |at: usize| V::load(lines[at].as_ptr());
+            let across = [0, 3, 6].map(|y| of_taps([tap(y), tap(y + 1), tap(y + 2)]));
+            for x in 0..SIZE {
+                let down = of_taps(across.map(|line| line[x]));
+                for (y, value) in down.into_iter().enumerate() {
+                    value.store(rows[y * SIZE + x].as_mut_ptr().add(at));
+                }
+            }
         }
     }
-    all
+}
+
+/// Returns `G g`.
+#[inline(always)]
+unsafe fn of_taps<V: Lanes>([a, b, c]: [V; 3]) -> [V; SIZE] {
+    // SAFETY: passed on.
+    unsafe {
+        let part = |value: V, divisor: f32| value.mul(V::splat(1.0 / divisor));
+        let (sum, even, odd) = (a.add(c), part(a, 24.0).add(part(c, 6.0)), part(b, 12.0));
+        [part(a, 4.0), part(sum.add(b), -6.0), part(sum.sub(b), -6.0), even.add(odd), even.sub(odd), c]
+    }
 }
 
 /// A convolution of 3x3 taps without strides, of tensors with channels last.
