@@ -122,8 +122,9 @@ impl Constant {
         self.kind == other.kind && self.shape == other.shape && self.numbers::<u8>() == other.numbers::<u8>()
     }
 
-    /// Reads an initializer.
-    pub(crate) fn from_tensor(tensor: &TensorProto) -> Result<Self> {
+    /// Reads an initializer, whose memory it keeps where it can.
+    pub(crate) fn from_tensor(mut tensor: TensorProto) -> Result<Self> {
+        let raw = std::mem::take(&mut tensor.raw_data);
         let name = &tensor.name;
         if !tensor.external_data.is_empty() || tensor.data_location != 0 {
             return Err(Error::unsupported(format!(
@@ -139,18 +140,19 @@ impl Constant {
         let dims = tensor.dims.iter().map(|&dim| usize::try_from(dim).ok()).collect::<Option<Vec<_>>>();
         let shape = dims.ok_or_else(damaged)?;
         let elements = count(&shape)?;
-        let raw = &tensor.raw_data;
         let data = if !raw.is_empty() {
             if raw.len() != elements * kind.bytes() {
                 return Err(damaged());
             }
             match kind {
-                Kind::F32 => decoded(raw, f32::from_le_bytes),
-                Kind::I64 => decoded(raw, i64::from_le_bytes),
-                Kind::I32 => decoded(raw, i32::from_le_bytes),
-                Kind::F16 => decoded(raw, u16::from_le_bytes),
-                Kind::Bool => decoded(raw, |[byte]: [u8; 1]| u8::from(byte != 0)),
-                Kind::U8 | Kind::I8 => Arena::from_numbers(raw),
+                Kind::U8 | Kind::I8 => Arena::from_bytes(raw),
+                Kind::Bool => decoded(&raw, |[byte]: [u8; 1]| u8::from(byte != 0)),
+                // The order of the file is that of memory.
+                _ if cfg!(target_endian = "little") => Arena::from_bytes(raw),
+                Kind::F32 => decoded(&raw, f32::from_le_bytes),
+                Kind::I64 => decoded(&raw, i64::from_le_bytes),
+                Kind::I32 => decoded(&raw, i32::from_le_bytes),
+                Kind::F16 => decoded(&raw, u16::from_le_bytes),
             }
         } else {
             let ints = &tensor.int32_data;

@@ -80,11 +80,12 @@ impl Reader<'_> {
         simplify(&mut graph, self.opset)?;
         let mut constants: Constants = HashMap::new();
         for tensor in std::mem::take(&mut graph.initializer) {
-            let constant = match captured.get(&tensor.name) {
+            let name = tensor.name.clone();
+            let constant = match captured.get(&name) {
                 Some(constant) => Arc::clone(constant),
-                None => Arc::new(Constant::from_tensor(&tensor)?),
+                None => Arc::new(Constant::from_tensor(tensor)?),
             };
-            constants.insert(tensor.name, constant);
+            constants.insert(name, constant);
         }
         let outputs: Vec<Output> = outputs(&graph)?;
         let own: HashSet<&String> =

@@ -40,7 +40,7 @@ fn widen_half_constants(graph: &mut GraphProto) -> Result<()> {
         if tensor.data_type != i32::from(DataType::Float16) {
             continue;
         }
-        let constant = Constant::from_tensor(tensor)?;
+        let constant = Constant::from_tensor(tensor.clone())?;
         let halves = constant.numbers::<u16>().reinterpret_cast::<f16>();
         let mut raw_data = vec![0; 2 * constant.bytes()];
         let mut floats = [0.0; 256];

@@ -56,7 +56,7 @@ pub(crate) fn take(
         for name in graphs.iter().flat_map(|body| free_names(body, 0)) {
             if let Some(tensor) = initializers.get(name.as_str()) {
                 if let Entry::Vacant(free) = captured.entry(name) {
-                    free.insert(Arc::new(Constant::from_tensor(tensor)?));
+                    free.insert(Arc::new(Constant::from_tensor((*tensor).clone())?));
                 }
             } else if let Some(constant) = outer.get(&name) {
                 captured.insert(name, Arc::clone(constant));

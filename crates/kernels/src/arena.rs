@@ -7,11 +7,24 @@ use std::marker::PhantomData;
 /// Memory of large arenas is untouched until it is written: the system provides zeroed pages then.
 #[derive(Debug, Default)]
 pub struct Arena {
-    /// Zeroed by the allocator, which has such memory for alignments of up to 16 bytes only.
-    memory: Vec<u128>,
-    /// Bytes before the first multiple of [`ALIGNMENT`].
+    memory: Memory,
+    /// Bytes before the first one of the arena.
     skipped: usize,
     bytes: usize,
+}
+
+#[derive(Debug)]
+enum Memory {
+    /// Zeroed by the allocator, which has such memory for alignments of up to 16 bytes only.
+    Zeroed(Vec<u128>),
+    /// Aligned to 16 bytes.
+    Adopted(Vec<u8>),
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self::Zeroed(Vec::new())
+    }
 }
 
 /// Alignment of regions, in bytes.
@@ -47,7 +60,16 @@ impl Arena {
         let bytes = bytes.next_multiple_of(ALIGNMENT);
         let memory = vec![0_u128; (bytes + ALIGNMENT) / size_of::<u128>() - 1];
         let skipped = memory.as_ptr().cast::<u8>().align_offset(ALIGNMENT);
-        Self { memory, skipped, bytes }
+        Self { memory: Memory::Zeroed(memory), skipped, bytes }
+    }
+
+    /// Creates an arena of these bytes, which are copied only where they are not aligned for every type of number. Its first byte is
+    /// a multiple of 16, not of [`ALIGNMENT`].
+    pub fn from_bytes(bytes: Vec<u8>) -> Self {
+        if bytes.is_empty() || !bytes.as_ptr().addr().is_multiple_of(align_of::<u128>()) {
+            return Self::from_numbers(&bytes);
+        }
+        Self { bytes: bytes.len(), memory: Memory::Adopted(bytes), skipped: 0 }
     }
 
     /// Creates an arena that has the numbers in its first bytes.
@@ -75,21 +97,23 @@ impl Arena {
         self.bytes
     }
 
-    /// Returns the first byte, aligned to [`ALIGNMENT`].
+    /// Returns the first byte.
     pub(crate) fn start(&self) -> *const u8 {
-        if self.bytes == 0 {
-            std::ptr::without_provenance(ALIGNMENT)
-        } else {
-            self.memory.as_ptr().cast::<u8>().wrapping_add(self.skipped)
-        }
+        let memory = match &self.memory {
+            _ if self.bytes == 0 => return std::ptr::without_provenance(ALIGNMENT),
+            Memory::Zeroed(memory) => memory.as_ptr().cast::<u8>(),
+            Memory::Adopted(memory) => memory.as_ptr(),
+        };
+        memory.wrapping_add(self.skipped)
     }
 
     fn start_mut(&mut self) -> *mut u8 {
-        if self.bytes == 0 {
-            std::ptr::without_provenance_mut(ALIGNMENT)
-        } else {
-            self.memory.as_mut_ptr().cast::<u8>().wrapping_add(self.skipped)
-        }
+        let memory = match &mut self.memory {
+            _ if self.bytes == 0 => return std::ptr::without_provenance_mut(ALIGNMENT),
+            Memory::Zeroed(memory) => memory.as_mut_ptr().cast::<u8>(),
+            Memory::Adopted(memory) => memory.as_mut_ptr(),
+        };
+        memory.wrapping_add(self.skipped)
     }
 
     /// Returns the numbers of a region.
@@ -207,6 +231,22 @@ mod tests {
             assert_eq!(arena.bytes(), bytes.next_multiple_of(ALIGNMENT));
             let all = arena.get::<u8>(Region { start: 0, bytes: arena.bytes() });
             assert!(all.as_ptr().addr().is_multiple_of(ALIGNMENT) && all.iter().all(|&byte| byte == 0));
+        }
+    }
+
+    #[test]
+    fn bytes_are_adopted() {
+        for length in [0, 1, 16, 100] {
+            let bytes: Vec<u8> = (0..length).collect();
+            let mut arena = Arena::from_bytes(bytes.clone());
+            let region = Region { start: 0, bytes: bytes.len() };
+            assert_eq!(arena.get::<u8>(region), bytes);
+            let numbers = arena.split(region).0.numbers::<i64>();
+            numbers.fill(-1);
+            assert_eq!(
+                arena.get::<i32>(region).iter().filter(|&&number| number != -1).count(),
+                bytes.len() / 4 % 2
+            );
         }
     }
 

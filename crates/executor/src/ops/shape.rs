@@ -109,7 +109,7 @@ pub(crate) fn size(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
 
 pub(crate) fn constant(planner: &mut Planner<'_>, node: &NodeProto, _: &[Option<Id>]) -> Result<Vec<Id>> {
     let constant = if let Some(tensor) = node.find("value").and_then(|attribute| attribute.t.as_ref()) {
-        Constant::from_tensor(tensor)?
+        Constant::from_tensor(tensor.clone())?
     } else if let Some(value) = node.find("value_float") {
         Constant::from_floats(Vec::new(), &[value.f])
     } else if let Some(value) = node.find("value_floats") {
@@ -131,7 +131,7 @@ pub(crate) fn constant_of_shape(
 ) -> Result<Vec<Id>> {
     let shape = sizes(node, &planner.ints(node, required(node, inputs, 0)?)?)?;
     let value = match node.find("value").and_then(|attribute| attribute.t.as_ref()) {
-        Some(tensor) => Constant::from_tensor(tensor)?,
+        Some(tensor) => Constant::from_tensor(tensor.clone())?,
         None => Constant::from_floats(vec![1], &[0.0]),
     };
     if count(&value.shape)? != 1 {
