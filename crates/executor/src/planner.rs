@@ -126,20 +126,20 @@ impl<'a> Planner<'a> {
         if self.varying.get() { make() } else { self.graph.packed((self.node, variant), make) }
     }
 
-    /// Returns the step that computes a value, if only one node reads its name.
-    pub(crate) fn step_for_one_reader(&self, id: Id, name: &str) -> Option<&Step> {
-        let Source::Buffer(buffer, 0) = self.values[id].source else { return None };
-        self.graph.only_reader(name)?;
-        self.steps.iter().rev().find(|step| step.buffer == buffer)
-    }
-
     /// Returns the index of the step that computes a value with channels last, if only this node reads the value.
     pub(crate) fn only_step(&self, id: Id) -> Option<usize> {
         let value = &self.values[id];
         let Source::Buffer(buffer, 0) = value.source else { return None };
+        if self.branching.is_some() || value.layout != Layout::ChannelsLast {
+            return None;
+        }
+        let mut writers = (0..self.steps.len()).filter(|&step| self.steps[step].buffer == buffer);
+        let writer = writers.next().filter(|_| writers.next().is_none())?;
         let is_of_buffer =
             |id: Id| matches!(self.values[id].source, Source::Buffer(other, _) if other == buffer);
-        let is_read = self.steps.iter().flat_map(|step| &step.reads).flatten().any(|&id| is_of_buffer(id));
+        if self.steps[writer..].iter().flat_map(|step| &step.reads).flatten().any(|&id| is_of_buffer(id)) {
+            return None;
+        }
         let is_own = |reader: &usize| *reader == self.node || self.is_fused(*reader);
         let mut names = self.names.iter().filter(|(_, id)| is_of_buffer(**id));
         let is_only_here = names.all(|(name, _)| {
@@ -148,11 +148,7 @@ impl<'a> Planner<'a> {
                     && readers.iter().filter(|&&reader| reader == self.node).count() <= 1
             })
         });
-        if is_read || !is_only_here || self.branching.is_some() || value.layout != Layout::ChannelsLast {
-            return None;
-        }
-        let mut writers = (0..self.steps.len()).filter(|&step| self.steps[step].buffer == buffer);
-        writers.next().filter(|_| writers.next().is_none())
+        is_only_here.then_some(writer)
     }
 
     /// Gives a name to a value, unless it has one.

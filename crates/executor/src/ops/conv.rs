@@ -169,8 +169,8 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
         residual: y,
         finish,
     };
-    let name = node.input.first().map_or("", String::as_str);
-    let pair = planner.step_for_one_reader(x, name).and_then(|step| {
+    let pair = planner.only_step(x).and_then(|step| {
+        let step = &planner.steps[step];
         let pair = DepthwisePointwise::new(step.kernel.depthwise()?, &conv)?;
         Some((pair, step.reads.first().copied().flatten()?))
     });

@@ -35,8 +35,11 @@ fn on_images(nodes: Vec<NodeProto>, outputs: &[(&str, &[i64])]) -> GraphProto {
     graph(&all, &[value("x", F32, &SHAPE.map(|dim| dim as i64))], &outputs, &constants)
 }
 
+/// Shape and elements of an output.
+type Output = (Vec<usize>, Vec<f64>);
+
 /// Returns the outputs of a graph, which are the same with two threads, and the operators of its steps.
-fn outputs(graph: GraphProto) -> (Vec<(Vec<usize>, Vec<f64>)>, Vec<String>) {
+fn outputs(graph: GraphProto) -> (Vec<Output>, Vec<String>) {
     let (bytes, x) = (bytes(graph), x());
     let mut executor = Executor::open(&bytes, Compute::single()).unwrap();
     let outputs = run(&mut executor, &[(&SHAPE, Data::F32(&x))]).unwrap();

@@ -1,13 +1,12 @@
 //! Prints a table of the built-in runtime and ONNX Runtime side by side on ONNX files, on random inputs, with one and
 //! with two threads: `cargo run --release -p opendr-inference --example runtimes -- ROUNDS FILE...`.
 //!
-//! One line per file: medians of the times of a run in milliseconds, taking turns that begin with runs that are not timed (with one thread, the time that the
-//! thread has computed, which other programs do not change much), their ratio, the largest difference of an output
-//! relative to its largest magnitude, and the times to open the model. ONNX Runtime is found as by the library
+//! One line per file: medians of the times of a run in milliseconds, taking turns that begin with runs that are not
+//! timed (with one thread, the time that the thread has computed, which other programs do not change much), their
+//! ratio, the largest difference of an output relative to its largest magnitude, and the times to open the model. ONNX Runtime is found as by the library
 //! (`ORT_DYLIB_PATH`). `runtimes memory FILE...` prints the peak memory of processes that open and run a model with
 //! one runtime, and their times to open it. With `--avx2` first, CPUID reports neither AVX-512 nor AMX to both sides.
-//! `runtimes layers FILE...` prints the nodes of models that take longest, with one
-//! thread and with two.
+//! `runtimes layers FILE...` prints the nodes of models that take longest, with one thread and with two.
 
 mod cpuid;
 mod inputs;
@@ -112,7 +111,7 @@ fn print_layers(file: &str, bytes: &[u8]) -> Result<()> {
     println!("# {file}: {:.3} ms with one thread, {:.3} ms with two", totals[0] / 1e3, totals[1] / 1e3);
     let mut both: Vec<(&LayerProfile, &LayerProfile)> = single.iter().zip(&two).collect();
     both.sort_by_key(|(layer, _)| std::cmp::Reverse(layer.time));
-    for (layer, parallel) in both.iter().take(400) {
+    for (layer, parallel) in both.iter().take(40) {
         let share = 100.0 * micros(layer) / totals[0];
         let (operator, name) = (&layer.operator, &layer.name);
         println!("{:>9.1} us {:>9.1} us {share:5.1} % {operator} {name}", micros(layer), micros(parallel));
