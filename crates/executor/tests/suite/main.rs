@@ -4,6 +4,7 @@
 mod conformance;
 mod control_flow;
 mod conv_transpose;
+mod convolutions;
 mod data_shapes;
 mod einsum;
 mod graphs;

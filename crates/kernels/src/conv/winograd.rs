@@ -22,6 +22,8 @@ const SIZE: usize = TILE + 2;
 const PRODUCTS: usize = SIZE * SIZE;
 /// Numbers of the transformed tiles and sums of a piece: they stay in the L2 cache.
 const PIECE: usize = 1 << 18;
+/// Output pixels from which on the saved products pay for four times as many weights, when a model opens too.
+const LEAST_PIXELS: usize = 2048;
 
 /// Transformed weights of 3x3 taps, packed for products.
 #[derive(Debug)]
@@ -163,7 +165,7 @@ impl Winograd {
     pub fn is_faster(window: &Window, [outputs, channels]: [usize; 2]) -> bool {
         let [height, width] = window.output;
         let is_plain = window.kernel == [3, 3] && window.strides == [1, 1] && window.dilations == [1, 1];
-        is_plain && channels >= 16 && outputs >= 16 && height * width >= 256
+        is_plain && channels >= 16 && outputs >= 16 && height * width >= LEAST_PIXELS
     }
 
     /// Returns the arithmetic of the convolution by its definition, and the bytes of the weights.
