@@ -30,6 +30,7 @@
 mod activation;
 mod aligned;
 mod arena;
+mod batch_norm;
 mod binary;
 mod column_sums;
 mod compute;
@@ -55,12 +56,13 @@ mod unary;
 
 pub use activation::Activation;
 pub use arena::{ALIGNMENT, Arena, Number, Region, Rest, Written};
+pub use batch_norm::{BatchNormalization, BatchStatistics};
 pub use binary::{Binary, Operand};
 pub use column_sums::add_column_sums;
 pub use compute::Compute;
 pub use conv::{
-    Convolution, DepthwiseConvolution, DepthwiseFilters, DepthwisePointwise, Filters, Finish, Strides,
-    Window, Winograd, WinogradFilters,
+    Convolution, DepthwiseConvolution, DepthwiseFilters, DepthwisePointwise, Filters, Finish, Phase, Strides,
+    TrainingConvolution, Window, Winograd, WinogradFilters, phases, window_of_phase,
 };
 pub use cost::LayerCost;
 pub use elementary::{exp_in_place, sigmoid_in_place, tanh_in_place};

@@ -7,7 +7,9 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_kernels::{Convolution, Filters, Finish, LayerCost, Strides, Window};
+use opendr_kernels::{
+    Convolution, Filters, Finish, LayerCost, Phase, Strides, Window, phases, window_of_phase,
+};
 use opendr_onnx::proto::NodeProto;
 
 use super::conv::{ConvStep, constant_bias, finish};
@@ -41,19 +43,6 @@ struct Geometry {
     strides: [usize; 2],
     dilations: [usize; 2],
     pads: [usize; 2],
-}
-
-/// The taps of the kernel that reach the output pixels of a phase along one axis.
-#[derive(Debug, Clone)]
-struct Phase {
-    /// Indices into the kernel, in the order of the input pixels that they multiply.
-    taps: Vec<usize>,
-    /// Distance of the first input pixel from the pixel with the index of the output pixel.
-    offset: isize,
-    /// Distance between input pixels.
-    dilation: usize,
-    /// Number of output pixels.
-    length: usize,
 }
 
 pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option<Id>]) -> Result<Vec<Id>> {
@@ -168,23 +157,13 @@ fn geometry(node: &NodeProto, dims: &[usize], weights: &Constant) -> Result<Geom
 impl Geometry {
     /// Returns the phases along an axis that have pixels.
     fn phases(&self, axis: usize) -> Vec<Phase> {
-        let (stride, dilation) = (self.strides[axis] as isize, self.dilations[axis] as isize);
-        let phase = |first: usize| {
-            let mut taps: Vec<(isize, usize)> = (0..self.kernel[axis])
-                .rev()
-                .map(|tap| ((first + self.pads[axis]) as isize - tap as isize * dilation, tap))
-                .filter(|(at, _)| at.rem_euclid(stride) == 0)
-                .map(|(at, tap)| (at.div_euclid(stride), tap))
-                .collect();
-            taps.sort_unstable();
-            Phase {
-                offset: taps.first().map_or(0, |first| first.0),
-                dilation: taps.windows(2).map(|pair| pair[1].0 - pair[0].0).next().unwrap_or(1) as usize,
-                taps: taps.into_iter().map(|(_, tap)| tap).collect(),
-                length: (self.output[axis] - first).div_ceil(self.strides[axis]),
-            }
-        };
-        (0..self.strides[axis].min(self.output[axis])).map(phase).collect()
+        phases(
+            self.kernel[axis],
+            self.strides[axis],
+            self.dilations[axis],
+            self.pads[axis],
+            self.output[axis],
+        )
     }
 }
 
@@ -216,28 +195,15 @@ fn by_phases(
     let mut phases = Vec::new();
     for (i, row) in rows.iter().enumerate() {
         for (j, column) in columns.iter().enumerate() {
-            let kernel = [row.taps.len(), column.taps.len()];
+            let (window, begin) = window_of_phase([row, column], geometry.input);
             // At most `MAX_PHASES`.
             let slot = (i * columns.len() + j) as u8;
             let filters = planner.packed(slot, || {
                 let weights = sub_kernel(geometry, floats, row, column);
                 let sizes = [groups, outputs, inputs];
-                Packed::Dense(Arc::new(Filters::new(&compute, &weights, sizes, kernel, bias, false)))
+                Packed::Dense(Arc::new(Filters::new(&compute, &weights, sizes, window.kernel, bias, false)))
             });
             let Packed::Dense(filters) = filters else { return Err(node.refused("weights of two kinds")) };
-            // A first pixel behind the first one of the input: the input begins there.
-            let begin = [row.offset.max(0) as usize, column.offset.max(0) as usize];
-            let window = Window {
-                kernel,
-                strides: [1, 1],
-                dilations: [row.dilation, column.dilation],
-                pads: [(-row.offset).max(0) as usize, (-column.offset).max(0) as usize],
-                input: [
-                    geometry.input[0].saturating_sub(begin[0]),
-                    geometry.input[1].saturating_sub(begin[1]),
-                ],
-                output: [row.length, column.length],
-            };
             let finish = finish(&fused, |slopes| filters.padded(slopes));
             phases.push(PhaseStep {
                 conv: Convolution { filters, window, batch, x: whole_x, y, residual: y, finish },

@@ -161,11 +161,16 @@ pub struct Winograd {
 }
 
 impl Winograd {
-    /// Returns whether the transforms cost less than the products that they save.
-    pub fn is_faster(window: &Window, [outputs, channels]: [usize; 2]) -> bool {
+    /// Returns whether the transforms cost less than the products that they save, for weights that are packed once.
+    pub fn is_faster(window: &Window, sizes: [usize; 2]) -> bool {
         let [height, width] = window.output;
+        Self::has_kernel(window, sizes) && height * width >= LEAST_PIXELS
+    }
+
+    /// Returns whether a convolution has 3x3 taps without strides, and outputs and channels that fill registers.
+    pub fn has_kernel(window: &Window, [outputs, channels]: [usize; 2]) -> bool {
         let is_plain = window.kernel == [3, 3] && window.strides == [1, 1] && window.dilations == [1, 1];
-        is_plain && channels >= 16 && outputs >= 16 && height * width >= LEAST_PIXELS
+        is_plain && channels >= 16 && outputs >= 16
     }
 
     /// Returns the arithmetic of the convolution by its definition, and the bytes of the weights.

@@ -1,0 +1,724 @@
+//! Convolutions whose weights change from call to call, with the gradients of input and weights, of tensors with channels last.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::depthwise::{DepthwiseConvolution, DepthwiseFilters};
+use super::filters::Filters;
+use super::geometry::{Convolution, Finish, Strides, Window};
+use super::phases::{phases, window_of_phase};
+use super::winograd::{Winograd, WinogradFilters};
+use crate::aligned::{SUMS, with_buffer};
+use crate::compute::Compute;
+use crate::isa::{Isa, for_every_isa};
+use crate::lanes::{Lanes, MAX_WIDTH};
+
+/// Numbers of input and output that the sums of a block read: they stay in the L2 cache while all weights pass.
+const BLOCK: usize = 1 << 17;
+/// Pixels from which on Winograd's transforms of the weights cost less than they save.
+const WINOGRAD_PIXELS: usize = 512;
+
+/// Sizes of a convolution of images with channels last. Its weights are `[outputs, channels / groups, height, width]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TrainingConvolution {
+    /// Number of images.
+    pub batch: usize,
+    /// Channels of the input.
+    pub channels: usize,
+    /// Channels of the output.
+    pub outputs: usize,
+    /// Number of groups.
+    pub groups: usize,
+    /// Geometry.
+    pub window: Window,
+}
+
+/// The part of a convolution that differs between the forward pass and the phases of the input's gradient.
+struct Part {
+    window: Window,
+    channels: usize,
+    outputs: usize,
+    x: Strides,
+    y: Strides,
+}
+
+impl TrainingConvolution {
+    /// Returns the number of numbers of the input.
+    pub fn input_length(&self) -> usize {
+        self.batch * self.window.input[0] * self.window.input[1] * self.channels
+    }
+
+    /// Returns the number of numbers of the output.
+    pub fn output_length(&self) -> usize {
+        self.batch * self.window.output[0] * self.window.output[1] * self.outputs
+    }
+
+    /// Returns the number of weights.
+    pub fn weights_length(&self) -> usize {
+        self.outputs * self.group_channels() * self.taps()
+    }
+
+    fn taps(&self) -> usize {
+        self.window.kernel[0] * self.window.kernel[1]
+    }
+
+    fn group_channels(&self) -> usize {
+        self.channels / self.groups
+    }
+
+    fn group_outputs(&self) -> usize {
+        self.outputs / self.groups
+    }
+
+    fn is_depthwise(&self) -> bool {
+        self.groups > 1 && self.groups == self.channels && self.groups == self.outputs
+    }
+
+    fn check(&self, x: &[f32], weights: &[f32], y: &[f32]) {
+        let is_divided = self.groups > 0
+            && self.channels.is_multiple_of(self.groups)
+            && self.outputs.is_multiple_of(self.groups);
+        assert!(is_divided, "the groups must divide the channels and the outputs");
+        assert_eq!(x.len(), self.input_length(), "the input must have the stated size");
+        assert_eq!(weights.len(), self.weights_length(), "the weights must have the stated size");
+        assert_eq!(y.len(), self.output_length(), "the output must have the stated size");
+    }
+
+    /// Computes the output.
+    ///
+    /// # Panics
+    /// When the lengths do not match.
+    pub fn forward(
+        &self,
+        compute: &Compute,
+        x: &[f32],
+        weights: &[f32],
+        bias: Option<&[f32]>,
+        y: &mut [f32],
+    ) {
+        self.check(x, weights, y);
+        let part = Part {
+            window: self.window,
+            channels: self.channels,
+            outputs: self.outputs,
+            x: Strides::channels_last(self.window.input, self.channels),
+            y: Strides::channels_last(self.window.output, self.outputs),
+        };
+        self.run(compute, &part, x, weights, bias, y);
+    }
+
+    /// Computes a part with weights of its own.
+    fn run(
+        &self,
+        compute: &Compute,
+        part: &Part,
+        x: &[f32],
+        weights: &[f32],
+        bias: Option<&[f32]>,
+        y: &mut [f32],
+    ) {
+        let &Part { window, channels, outputs, x: x_strides, y: y_strides } = part;
+        let (groups, batch, finish) = (self.groups, self.batch, Finish::default());
+        let pixels = batch * window.output[0] * window.output[1];
+        let is_whole = x_strides == Strides::channels_last(window.input, channels);
+        if self.is_depthwise() {
+            let filters = Arc::new(DepthwiseFilters::new(weights, channels, window.kernel, bias));
+            DepthwiseConvolution { filters, window, batch, x: x_strides, y: y_strides, finish }
+                .run(compute, x, y);
+        } else if groups == 1
+            && is_whole
+            && pixels >= WINOGRAD_PIXELS
+            && Winograd::has_kernel(&window, [outputs, channels])
+        {
+            let filters = Arc::new(WinogradFilters::new(compute, weights, [outputs, channels], bias));
+            Winograd { filters, window, batch, y: y_strides, finish }.run(compute, x, None, y);
+        } else {
+            let sizes = [groups, outputs / groups, channels / groups];
+            let filters = Arc::new(Filters::new(compute, weights, sizes, window.kernel, bias, false));
+            Convolution { filters, window, batch, x: x_strides, y: y_strides, residual: y_strides, finish }
+                .run(compute, x, None, y);
+        }
+    }
+
+    /// Computes the gradient of the input from that of the output.
+    ///
+    /// # Panics
+    /// When the lengths do not match.
+    pub fn input_gradient(&self, compute: &Compute, weights: &[f32], dy: &[f32], dx: &mut [f32]) {
+        self.check(dx, weights, dy);
+        let Window { kernel, strides, dilations, pads, input, output } = self.window;
+        let axis =
+            |axis: usize| phases(kernel[axis], strides[axis], dilations[axis], pads[axis], input[axis]);
+        let (rows, columns) = (axis(0), axis(1));
+        let (whole_x, whole_y) =
+            (Strides::channels_last(input, self.channels), Strides::channels_last(output, self.outputs));
+        let all_phases = || rows.iter().flat_map(|row| columns.iter().map(move |column| [row, column]));
+        if all_phases().any(|phases| phases.iter().any(|phase| phase.taps.is_empty())) {
+            dx.fill(0.0);
+        }
+        for (row_index, row) in rows.iter().enumerate() {
+            for (column_index, column) in columns.iter().enumerate() {
+                if row.taps.is_empty() || column.taps.is_empty() {
+                    continue;
+                }
+                let (window, begin) = window_of_phase([row, column], output);
+                let part = Part {
+                    window,
+                    channels: self.outputs,
+                    outputs: self.channels,
+                    x: whole_y,
+                    y: Strides {
+                        row: strides[0] * whole_x.row,
+                        pixel: strides[1] * whole_x.pixel,
+                        ..whole_x
+                    },
+                };
+                let weights = self.transposed(weights, &row.taps, &column.taps);
+                let from = begin[0] * whole_y.row + begin[1] * whole_y.pixel;
+                let to = row_index * whole_x.row + column_index * whole_x.pixel;
+                self.run(
+                    compute,
+                    &part,
+                    dy.get(from..).unwrap_or_default(),
+                    &weights,
+                    None,
+                    dx.get_mut(to..).unwrap_or_default(),
+                );
+            }
+        }
+    }
+
+    /// Returns weights of these taps, `[channels, outputs / groups, rows, columns]`.
+    fn transposed(&self, weights: &[f32], rows: &[usize], columns: &[usize]) -> Vec<f32> {
+        let (inputs, outputs) = (self.group_channels(), self.group_outputs());
+        let taps = self.taps();
+        let mut all = Vec::with_capacity(self.channels * outputs * rows.len() * columns.len());
+        for group in 0..self.groups {
+            for input in 0..inputs {
+                for output in 0..outputs {
+                    let from = &weights[((group * outputs + output) * inputs + input) * taps..][..taps];
+                    for row in rows {
+                        all.extend(columns.iter().map(|column| from[row * self.window.kernel[1] + column]));
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    /// Computes the gradient of the weights from the input and the gradient of the output.
+    ///
+    /// # Panics
+    /// When the lengths do not match.
+    pub fn weight_gradient(&self, compute: &Compute, x: &[f32], dy: &[f32], dw: &mut [f32]) {
+        self.check(x, dw, dy);
+        if dw.is_empty() || dy.is_empty() || x.is_empty() {
+            dw.fill(0.0);
+            return;
+        }
+        let sums = Sums::new(self, x, dy);
+        if self.is_depthwise() {
+            self.depthwise_weight_gradient(compute, &sums, dw);
+        } else {
+            self.dense_weight_gradient(compute, &sums, dw);
+        }
+    }
+
+    fn dense_weight_gradient(&self, compute: &Compute, sums: &Sums<'_>, dw: &mut [f32]) {
+        let (inputs, outputs, taps) = (self.group_channels(), self.group_outputs(), self.taps());
+        // Registers lie along the larger side.
+        let along_inputs = inputs >= MAX_WIDTH || inputs >= outputs;
+        let (rows, columns) = if along_inputs { (outputs, inputs) } else { (inputs, outputs) };
+        let padded = columns.next_multiple_of(MAX_WIDTH);
+        let tiles = tiles_of(rows, compute.isa());
+        let plane = rows * padded;
+        let items = self.groups * tiles.len() * taps;
+        let pieces = items.min(4 * compute.pool().threads());
+        with_buffer(&SUMS, self.groups * taps * plane, |all| {
+            all.fill(0.0);
+            let to = Written(all.as_mut_ptr());
+            compute.pool().run(pieces, |piece| {
+                let work = Work {
+                    along_inputs,
+                    padded,
+                    columns,
+                    items: piece * items / pieces..(piece + 1) * items / pieces,
+                    tiles: &tiles,
+                    // SAFETY: the pieces write disjoint rows of sums, which are as long as the items.
+                    to: unsafe { to.at(0) },
+                    plane,
+                };
+                // SAFETY: lengths have been checked.
+                unsafe { dispatch_dense(compute.isa(), sums, &work) };
+            });
+            let all = &*all;
+            compute.pool().run_on_pieces(dw, inputs * taps, |output, dw| {
+                let (group, output) = (output / outputs, output % outputs);
+                for input in 0..inputs {
+                    let at = if along_inputs { output * padded + input } else { input * padded + output };
+                    for (tap, dw) in dw[input * taps..][..taps].iter_mut().enumerate() {
+                        *dw = all[(group * taps + tap) * plane + at];
+                    }
+                }
+            });
+        });
+    }
+
+    fn depthwise_weight_gradient(&self, compute: &Compute, sums: &Sums<'_>, dw: &mut [f32]) {
+        let (channels, taps) = (self.channels, self.taps());
+        let padded = channels.next_multiple_of(MAX_WIDTH);
+        let blocks = padded / MAX_WIDTH;
+        let at_once = blocks.div_ceil(2 * compute.pool().threads()).min(4);
+        with_buffer(&SUMS, taps * padded, |all| {
+            all.fill(0.0);
+            let to = Written(all.as_mut_ptr());
+            compute.pool().run(blocks.div_ceil(at_once), |piece| {
+                let first = piece * at_once * MAX_WIDTH;
+                let range = first..((piece + 1) * at_once * MAX_WIDTH).min(padded);
+                // SAFETY: lengths have been checked; the pieces write disjoint columns.
+                unsafe { dispatch_depthwise(compute.isa(), sums, range, to.at(0), padded) };
+            });
+            for (channel, dw) in dw.chunks_mut(taps).enumerate() {
+                dw.iter_mut().enumerate().for_each(|(tap, dw)| *dw = all[tap * padded + channel]);
+            }
+        });
+    }
+}
+
+/// A pointer to what pieces write disjoint parts of.
+struct Written(*mut f32);
+
+// SAFETY: pieces write disjoint parts.
+unsafe impl Sync for Written {}
+
+impl Written {
+    /// # Safety
+    /// The index lies within the memory.
+    unsafe fn at(&self, index: usize) -> *mut f32 {
+        // SAFETY: passed on.
+        unsafe { self.0.add(index) }
+    }
+}
+
+/// Returns first row and number of rows of the tiles of a matrix.
+fn tiles_of(rows: usize, isa: Isa) -> Vec<[usize; 2]> {
+    // SAFETY: it has no conditions.
+    let most = unsafe { dispatch_rows(isa) };
+    let mut tiles = Vec::new();
+    let mut first = 0;
+    while first < rows {
+        let left = rows - first;
+        let count = [most, 8, 4, 2, 1].into_iter().find(|&count| count <= left.min(most)).unwrap_or(1);
+        tiles.push([first, count]);
+        first += count;
+    }
+    tiles
+}
+
+for_every_isa!(fn dispatch_rows = most_rows() -> usize);
+
+#[inline(always)]
+unsafe fn most_rows<V: Lanes>() -> usize {
+    if V::REGISTERS >= 32 { 12 } else { 6 }
+}
+
+/// Input and gradient of the output, whose products are summed over the pixels.
+struct Sums<'a> {
+    conv: &'a TrainingConvolution,
+    x: *const f32,
+    dy: *const f32,
+    /// Columns of the output whose tap lies within the input, for each column of taps.
+    columns: Vec<[usize; 2]>,
+    /// Whether the pixels of all rows follow each other in both.
+    is_joined: bool,
+}
+
+// SAFETY: what the pointers refer to is only read.
+unsafe impl Sync for Sums<'_> {}
+
+/// Pixels of a row of the output whose tap lies within the input.
+struct Run {
+    x: *const f32,
+    dy: *const f32,
+    count: usize,
+}
+
+impl<'a> Sums<'a> {
+    fn new(conv: &'a TrainingConvolution, x: &'a [f32], dy: &'a [f32]) -> Self {
+        let Window { kernel, strides, dilations, pads, input, output } = conv.window;
+        let columns = (0..kernel[1]).map(|tap| {
+            let at = tap * dilations[1];
+            let first = pads[1].saturating_sub(at).div_ceil(strides[1]).min(output[1]);
+            let end = (input[1] + pads[1]).checked_sub(at + 1).map_or(0, |last| last / strides[1] + 1);
+            [first, end.min(output[1]).max(first)]
+        });
+        Self {
+            conv,
+            x: x.as_ptr(),
+            dy: dy.as_ptr(),
+            columns: columns.collect(),
+            is_joined: conv.window.is_pointwise(),
+        }
+    }
+
+    /// Returns the number of rows of the output, of all images.
+    fn rows(&self) -> usize {
+        self.conv.batch * self.conv.window.output[0]
+    }
+
+    /// Returns the number of rows whose pixels fill a block, where each pixel has so many numbers.
+    fn rows_of_block(&self, numbers: usize) -> usize {
+        (BLOCK / (self.conv.window.output[1] * numbers).max(1)).clamp(1, self.rows())
+    }
+
+    /// Returns the pixels of the first rows of a range for a tap, and the rows that follow these.
+    #[inline(always)]
+    unsafe fn run(&self, rows: Range<usize>, tap: usize) -> (Option<Run>, Range<usize>) {
+        let Window { kernel, strides, dilations, pads, input, output } = self.conv.window;
+        let (row, rest) = (rows.start, rows.start + 1..rows.end);
+        // SAFETY: pixels lie within the tensors.
+        unsafe {
+            if self.is_joined {
+                let pixel = row * output[1];
+                let run = Run {
+                    x: self.x.add(pixel * self.conv.channels),
+                    dy: self.dy.add(pixel * self.conv.outputs),
+                    count: rows.len() * output[1],
+                };
+                return (Some(run), rows.end..rows.end);
+            }
+            let (image, line) = (row / output[0], row % output[0]);
+            let (ky, kx) = (tap / kernel[1], tap % kernel[1]);
+            let [first, end] = self.columns[kx];
+            let at = (line * strides[0] + ky * dilations[0]).checked_sub(pads[0]).filter(|&at| at < input[0]);
+            let Some(line) = at.filter(|_| first < end) else { return (None, rest) };
+            let column = first * strides[1] + kx * dilations[1] - pads[1];
+            let pixel = (image * input[0] + line) * input[1] + column;
+            let run = Run {
+                x: self.x.add(pixel * self.conv.channels),
+                dy: self.dy.add((row * output[1] + first) * self.conv.outputs),
+                count: end - first,
+            };
+            (Some(run), rest)
+        }
+    }
+}
+
+/// A share of the sums of a dense convolution.
+struct Work<'a> {
+    /// Whether registers lie along the channels of the input, else along the outputs.
+    along_inputs: bool,
+    /// Columns, filled up to whole registers, and without.
+    padded: usize,
+    columns: usize,
+    /// Items: group by group, tile by tile, tap by tap.
+    items: Range<usize>,
+    tiles: &'a [[usize; 2]],
+    to: *mut f32,
+    /// Numbers of the sums of a tap.
+    plane: usize,
+}
+
+for_every_isa!(fn dispatch_dense = dense_sums(sums: &Sums<'_>, work: &Work<'_>));
+
+/// # Safety
+/// The tensors have the sizes of the convolution; nothing else uses the rows of the items.
+#[inline(always)]
+unsafe fn dense_sums<V: Lanes>(sums: &Sums<'_>, work: &Work<'_>) {
+    let conv = sums.conv;
+    let taps = conv.taps();
+    let at_once = sums.rows_of_block(conv.group_channels() + conv.group_outputs());
+    for first in (0..sums.rows()).step_by(at_once) {
+        let rows = first..(first + at_once).min(sums.rows());
+        for item in work.items.clone() {
+            let (group, item) = (item / (work.tiles.len() * taps), item % (work.tiles.len() * taps));
+            let ([row, count], tap) = (work.tiles[item / taps], item % taps);
+            // SAFETY: the tile lies within the sums.
+            unsafe {
+                let to = work.to.add((group * taps + tap) * work.plane + row * work.padded);
+                let tile = Tile { group, tap, row, to };
+                match count {
+                    12 => dense_tile::<V, 12>(sums, work, &rows, &tile),
+                    8 => dense_tile::<V, 8>(sums, work, &rows, &tile),
+                    6 => dense_tile::<V, 6>(sums, work, &rows, &tile),
+                    4 => dense_tile::<V, 4>(sums, work, &rows, &tile),
+                    2 => dense_tile::<V, 2>(sums, work, &rows, &tile),
+                    _ => dense_tile::<V, 1>(sums, work, &rows, &tile),
+                }
+            }
+        }
+    }
+}
+
+/// Rows of the sums of a tap.
+struct Tile {
+    group: usize,
+    tap: usize,
+    row: usize,
+    to: *mut f32,
+}
+
+#[inline(always)]
+unsafe fn dense_tile<V: Lanes, const R: usize>(
+    sums: &Sums<'_>,
+    work: &Work<'_>,
+    rows: &Range<usize>,
+    tile: &Tile,
+) {
+    let mut column = 0;
+    while column < work.columns {
+        let left = work.columns - column;
+        // SAFETY: the columns are filled up to whole registers.
+        unsafe {
+            if left > V::WIDTH {
+                let tail = (left < 2 * V::WIDTH).then_some(left - V::WIDTH);
+                columns::<V, R, 2>(sums, work, rows, tile, column, tail);
+                column += 2 * V::WIDTH;
+            } else {
+                columns::<V, R, 1>(sums, work, rows, tile, column, (left < V::WIDTH).then_some(left));
+                column += V::WIDTH;
+            }
+        }
+    }
+}
+
+/// Adds the products of `R` rows and `N` registers of columns; `tail` is the number of columns in the last one.
+#[inline(always)]
+unsafe fn columns<V: Lanes, const R: usize, const N: usize>(
+    sums: &Sums<'_>,
+    work: &Work<'_>,
+    rows: &Range<usize>,
+    tile: &Tile,
+    column: usize,
+    tail: Option<usize>,
+) {
+    let conv = sums.conv;
+    let x_step = conv.window.strides[1] * conv.channels;
+    let (x_group, dy_group) = (tile.group * conv.group_channels(), tile.group * conv.group_outputs());
+    // SAFETY: rows and columns lie within the pixels and the sums.
+    unsafe {
+        let mut all = [[V::splat(0.0); N]; R];
+        for (r, all) in all.iter_mut().enumerate() {
+            for (n, sum) in all.iter_mut().enumerate() {
+                *sum = V::load(tile.to.add(r * work.padded + column + n * V::WIDTH));
+            }
+        }
+        let mut rows = rows.clone();
+        while !rows.is_empty() {
+            let (run, rest) = sums.run(rows, tile.tap);
+            rows = rest;
+            let Some(Run { x, dy, count }) = run else { continue };
+            let (x, dy) = (x.add(x_group), dy.add(dy_group));
+            let (mut left, left_step, mut right, right_step) = if work.along_inputs {
+                (dy.add(tile.row), conv.outputs, x.add(column), x_step)
+            } else {
+                (x.add(tile.row), x_step, dy.add(column), conv.outputs)
+            };
+            for _ in 0..count {
+                let mut vectors = [V::splat(0.0); N];
+                for (n, vector) in vectors.iter_mut().enumerate() {
+                    let from = right.add(n * V::WIDTH);
+                    *vector = match tail {
+                        Some(count) if n + 1 == N => V::load_some(from, count),
+                        _ => V::load(from),
+                    };
+                }
+                for (r, all) in all.iter_mut().enumerate() {
+                    let factor = V::splat(*left.add(r));
+                    for (sum, vector) in all.iter_mut().zip(vectors) {
+                        *sum = vector.mul_add(factor, *sum);
+                    }
+                }
+                left = left.wrapping_add(left_step);
+                right = right.wrapping_add(right_step);
+            }
+        }
+        for (r, all) in all.iter().enumerate() {
+            for (n, sum) in all.iter().enumerate() {
+                sum.store(tile.to.add(r * work.padded + column + n * V::WIDTH));
+            }
+        }
+    }
+}
+
+for_every_isa!(fn dispatch_depthwise = depthwise_sums(sums: &Sums<'_>, channels: Range<usize>, to: *mut f32, padded: usize));
+
+/// # Safety
+/// The tensors have the sizes of the convolution; nothing else uses the columns of these channels.
+#[inline(always)]
+unsafe fn depthwise_sums<V: Lanes>(sums: &Sums<'_>, channels: Range<usize>, to: *mut f32, padded: usize) {
+    let at_once = sums.rows_of_block(8 * channels.len());
+    for first in (0..sums.rows()).step_by(at_once) {
+        let rows = first..(first + at_once).min(sums.rows());
+        for tap in 0..sums.conv.taps() {
+            let mut channel = channels.start;
+            while channel < channels.end {
+                // SAFETY: the columns are filled up to whole registers.
+                unsafe {
+                    let to = to.add(tap * padded + channel);
+                    if channel + 4 * V::WIDTH <= channels.end.min(sums.conv.channels) {
+                        channel_sums::<V, 4>(sums, &rows, tap, channel, to);
+                        channel += 4 * V::WIDTH;
+                    } else {
+                        channel_sums::<V, 1>(sums, &rows, tap, channel, to);
+                        channel += V::WIDTH;
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+unsafe fn channel_sums<V: Lanes, const N: usize>(
+    sums: &Sums<'_>,
+    rows: &Range<usize>,
+    tap: usize,
+    channel: usize,
+    to: *mut f32,
+) {
+    let channels = sums.conv.channels;
+    let count = channels.saturating_sub(channel).min(V::WIDTH);
+    if count == 0 {
+        return;
+    }
+    let x_step = sums.conv.window.strides[1] * channels;
+    // SAFETY: the channels lie within the pixels.
+    unsafe {
+        let load = |from: *const f32| {
+            if N > 1 || count == V::WIDTH { V::load(from) } else { V::load_some(from, count) }
+        };
+        let mut all = [V::splat(0.0); N];
+        for (n, sum) in all.iter_mut().enumerate() {
+            *sum = V::load(to.add(n * V::WIDTH));
+        }
+        let mut rows = rows.clone();
+        while !rows.is_empty() {
+            let (run, rest) = sums.run(rows, tap);
+            rows = rest;
+            let Some(Run { x, dy, count }) = run else { continue };
+            let (mut x, mut dy) = (x.add(channel), dy.add(channel));
+            for _ in 0..count {
+                for (n, sum) in all.iter_mut().enumerate() {
+                    *sum = load(x.add(n * V::WIDTH)).mul_add(load(dy.add(n * V::WIDTH)), *sum);
+                }
+                x = x.wrapping_add(x_step);
+                dy = dy.wrapping_add(channels);
+            }
+        }
+        for (n, sum) in all.iter().enumerate() {
+            sum.store(to.add(n * V::WIDTH));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Distance between a number and its f64 reference, relative to the largest one.
+    const TOLERANCE: f64 = 2e-5;
+
+    fn random(length: usize, seed: usize) -> Vec<f32> {
+        (0..length)
+            .map(|i| ((i * 7919 + seed * 104_729 + i * i % 611) % 2003) as f32 / 1001.0 - 1.0)
+            .collect()
+    }
+
+    /// Calls a function with the indices of input, weight and output of every product.
+    fn products(conv: &TrainingConvolution, mut each: impl FnMut(usize, usize, usize)) {
+        let Window { kernel, strides, dilations, pads, input, output } = conv.window;
+        let (inputs, outputs) = (conv.group_channels(), conv.group_outputs());
+        for image in 0..conv.batch {
+            for (oy, ox) in (0..output[0]).flat_map(|y| (0..output[1]).map(move |x| (y, x))) {
+                for (ky, kx) in (0..kernel[0]).flat_map(|y| (0..kernel[1]).map(move |x| (y, x))) {
+                    let iy = (oy * strides[0] + ky * dilations[0]).checked_sub(pads[0]);
+                    let ix = (ox * strides[1] + kx * dilations[1]).checked_sub(pads[1]);
+                    let (Some(iy), Some(ix)) = (iy.filter(|&y| y < input[0]), ix.filter(|&x| x < input[1]))
+                    else {
+                        continue;
+                    };
+                    let x = ((image * input[0] + iy) * input[1] + ix) * conv.channels;
+                    let y = ((image * output[0] + oy) * output[1] + ox) * conv.outputs;
+                    for out in 0..conv.outputs {
+                        for inner in 0..inputs {
+                            let weight = ((out * inputs + inner) * kernel[0] + ky) * kernel[1] + kx;
+                            each(x + out / outputs * inputs + inner, weight, y + out);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn assert_near(got: &[f32], wanted: &[f64], what: &str) {
+        let largest = wanted.iter().fold(1e-3, |largest: f64, value| largest.max(value.abs()));
+        for (i, (got, wanted)) in got.iter().zip(wanted).enumerate() {
+            let distance = (f64::from(*got) - wanted).abs();
+            assert!(distance <= TOLERANCE * largest, "{what}, {i}: {got} in place of {wanted}");
+        }
+    }
+
+    #[test]
+    fn passes_equal_their_definition() {
+        let mut cases = Vec::new();
+        for (channels, outputs, groups) in [
+            (3, 20, 1),
+            (20, 3, 1),
+            (16, 32, 1),
+            (33, 29, 1),
+            (40, 40, 40),
+            (5, 5, 5),
+            (70, 70, 70),
+            (12, 18, 3),
+            (48, 16, 1),
+        ] {
+            for (kernel, stride, dilation, pads, input) in [
+                ([1, 1], [1, 1], [1, 1], [0, 0, 0, 0], [5, 7]),
+                ([1, 1], [2, 2], [1, 1], [0, 0, 0, 0], [6, 7]),
+                ([3, 3], [1, 1], [1, 1], [1, 1, 1, 1], [9, 30]),
+                ([3, 3], [2, 2], [1, 1], [1, 1, 1, 1], [8, 9]),
+                ([3, 3], [1, 1], [2, 3], [2, 3, 2, 3], [7, 8]),
+                ([3, 2], [2, 3], [1, 1], [2, 0, 1, 3], [7, 8]),
+                ([5, 5], [1, 1], [1, 1], [5, 0, 4, 6], [4, 5]),
+                ([2, 2], [3, 3], [1, 1], [0, 0, 0, 0], [8, 8]),
+            ] {
+                cases.push((channels, outputs, groups, kernel, stride, dilation, pads, input));
+            }
+        }
+        for (channels, outputs, groups, kernel, strides, dilations, pads, input) in cases {
+            let output = [0, 1].map(|i| {
+                (input[i] + pads[i] + pads[i + 2] - (kernel[i] - 1) * dilations[i] - 1) / strides[i] + 1
+            });
+            let window = Window { kernel, strides, dilations, pads: [pads[0], pads[1]], input, output };
+            let conv = TrainingConvolution { batch: 2, channels, outputs, groups, window };
+            let (x, weights) = (random(conv.input_length(), 1), random(conv.weights_length(), 2));
+            let (dy, bias) = (random(conv.output_length(), 3), random(outputs, 4));
+            let mut y_wanted: Vec<f64> = (0..dy.len()).map(|i| f64::from(bias[i % outputs])).collect();
+            let mut dx_wanted = vec![0.0; x.len()];
+            let mut dw_wanted = vec![0.0; weights.len()];
+            products(&conv, |i, w, o| {
+                y_wanted[o] += f64::from(x[i]) * f64::from(weights[w]);
+                dx_wanted[i] += f64::from(dy[o]) * f64::from(weights[w]);
+                dw_wanted[w] += f64::from(dy[o]) * f64::from(x[i]);
+            });
+            for isa in Isa::available() {
+                let mut of_one = None;
+                for threads in [1, 3] {
+                    let pool = Arc::new(crate::pool::WorkerPool::new(threads));
+                    let compute = Compute::new(isa, pool);
+                    let mut results = [vec![9.0; dy.len()], vec![9.0; x.len()], vec![9.0; weights.len()]];
+                    let [y, dx, dw] = &mut results;
+                    conv.forward(&compute, &x, &weights, Some(&bias), y);
+                    conv.input_gradient(&compute, &weights, &dy, dx);
+                    conv.weight_gradient(&compute, &x, &dy, dw);
+                    assert_near(y, &y_wanted, &format!("output of {conv:?}, {isa}"));
+                    assert_near(dx, &dx_wanted, &format!("gradient of the input of {conv:?}, {isa}"));
+                    assert_near(dw, &dw_wanted, &format!("gradient of the weights of {conv:?}, {isa}"));
+                    let one = of_one.get_or_insert_with(|| results.clone());
+                    assert_eq!(*one, results, "{conv:?}, {isa}: threads change the bits");
+                }
+            }
+        }
+    }
+}
