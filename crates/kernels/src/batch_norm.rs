@@ -3,12 +3,13 @@
 use crate::compute::Compute;
 use crate::isa::{Isa, for_every_isa};
 use crate::lanes::{Lanes, MAX_WIDTH};
+use crate::unary::Unary;
 
 /// Numbers of a chunk of pixels, whose statistics are summed by one thread.
 const CHUNK: usize = 1 << 14;
 
 /// Normalisation by the statistics of a batch (Ioffe and Szegedy, *Batch Normalization*, 2015), of pixels with channels last:
-/// `y = (x - mean) / √(variance + epsilon) gamma + beta`, and optionally `max(y, 0)`.
+/// `y = activation((x - mean) / √(variance + epsilon) gamma + beta)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BatchNormalization<'a> {
     /// Factor of each channel.
@@ -17,8 +18,8 @@ pub struct BatchNormalization<'a> {
     pub beta: &'a [f32],
     /// What is added to the variance.
     pub epsilon: f32,
-    /// Whether the activation function ReLU follows.
-    pub relu: bool,
+    /// Activation function that follows, one that [`Unary::is_differentiable`].
+    pub activation: Unary,
 }
 
 /// Mean and biased variance of each channel.
@@ -43,6 +44,7 @@ impl BatchNormalization<'_> {
 
     fn check(&self, x: &[f32], y: &[f32]) {
         assert_eq!(self.beta.len(), self.channels(), "one term per channel");
+        assert!(self.activation.is_differentiable(), "the activation function has a gradient");
         assert_eq!(x.len(), y.len(), "the output must have the size of the input");
         assert!(x.len().is_multiple_of(self.channels().max(1)), "the pixels must have all channels");
     }
@@ -240,8 +242,6 @@ for_every_isa!(fn dispatch_normalize = normalize(x: &[f32], y: &mut [f32], affin
 #[inline(always)]
 unsafe fn normalize<V: Lanes>(x: &[f32], y: &mut [f32], affine: &Affine, norm: &BatchNormalization<'_>) {
     let channels = norm.channels();
-    // SAFETY: the instruction set is enabled here.
-    let zero = unsafe { V::splat(0.0) };
     for pixel in (0..x.len()).step_by(channels) {
         for_registers::<V>(channels, |channel, count| {
             // SAFETY: channels and pixels lie within the slices.
@@ -249,8 +249,7 @@ unsafe fn normalize<V: Lanes>(x: &[f32], y: &mut [f32], affine: &Affine, norm: &
                 let scale = V::load(affine.scale.as_ptr().add(channel));
                 let shift = V::load(affine.shift.as_ptr().add(channel));
                 let value = load::<V>(x.as_ptr().add(pixel + channel), count).mul_add(scale, shift);
-                let value = if norm.relu { zero.max(value) } else { value };
-                store(value, y.as_mut_ptr().add(pixel + channel), count);
+                store(norm.activation.of(value), y.as_mut_ptr().add(pixel + channel), count);
             }
         });
     }
@@ -279,7 +278,8 @@ unsafe fn gradients<V: Lanes>(
             let (mut x_from, mut dy_from) = (x.as_ptr().add(channel), dy.as_ptr().add(channel));
             for _ in 0..x.len() / channels {
                 let value = load::<V>(x_from, count);
-                let gradient = gated(load::<V>(dy_from, count), value, scale, shift, norm.relu);
+                let gradient =
+                    before_activation(load::<V>(dy_from, count), value, scale, shift, norm.activation);
                 sum = sum.add(gradient);
                 products = gradient.mul_add(value.sub(mean), products);
                 x_from = x_from.wrapping_add(channels);
@@ -293,9 +293,9 @@ unsafe fn gradients<V: Lanes>(
 
 /// Returns the gradient before the activation function.
 #[inline(always)]
-unsafe fn gated<V: Lanes>(dy: V, x: V, scale: V, shift: V, relu: bool) -> V {
+unsafe fn before_activation<V: Lanes>(dy: V, x: V, scale: V, shift: V, activation: Unary) -> V {
     // SAFETY: passed on.
-    unsafe { if relu { dy.where_positive(x.mul_add(scale, shift)) } else { dy } }
+    unsafe { activation.backward_of(x.mul_add(scale, shift), dy) }
 }
 
 for_every_isa!(fn dispatch_combine = combine(from: [&[f32]; 2], dx: &mut [f32], affine: &Affine, line: [&[f32]; 2], norm: &BatchNormalization<'_>));
@@ -319,7 +319,7 @@ unsafe fn combine<V: Lanes>(
                 let term = V::load(term.as_ptr().add(channel));
                 let value = load::<V>(x.as_ptr().add(pixel + channel), count);
                 let gradient = load::<V>(dy.as_ptr().add(pixel + channel), count);
-                let gradient = gated(gradient, value, scale, shift, norm.relu);
+                let gradient = before_activation(gradient, value, scale, shift, norm.activation);
                 let whole = gradient.mul_add(scale, value.mul_add(slope, term));
                 store(whole, dx.as_mut_ptr().add(pixel + channel), count);
             }
@@ -364,13 +364,21 @@ mod tests {
             let normalized = |pixel| (value(pixel) - mean) / deviation;
             let (gamma, beta) = (f64::from(norm.gamma[channel]), f64::from(norm.beta[channel]));
             let output = |pixel| gamma * normalized(pixel) + beta;
+            let sigmoid = |value: f64| 1.0 / (1.0 + (-value).exp());
+            let activated = |value: f64| match norm.activation {
+                Unary::Relu => value.max(0.0),
+                Unary::Clip { low, high } => value.clamp(f64::from(low), f64::from(high)),
+                Unary::Swish => value * sigmoid(value),
+                _ => value,
+            };
             let gradient = |pixel: usize| {
-                if norm.relu && output(pixel) <= 0.0 { 0.0 } else { f64::from(dy[at(pixel)]) }
+                let (value, step) = (output(pixel), 1e-6);
+                (activated(value + step) - activated(value - step)) / (2.0 * step) * f64::from(dy[at(pixel)])
             };
             dbeta[channel] = (0..pixels).map(gradient).sum();
             dgamma[channel] = (0..pixels).map(|pixel| gradient(pixel) * normalized(pixel)).sum();
             for pixel in 0..pixels {
-                y[at(pixel)] = if norm.relu { output(pixel).max(0.0) } else { output(pixel) };
+                y[at(pixel)] = activated(output(pixel));
                 let mean_terms = (dbeta[channel] + normalized(pixel) * dgamma[channel]) / pixels as f64;
                 dx[at(pixel)] = gamma / deviation * (gradient(pixel) - mean_terms);
             }
@@ -383,12 +391,14 @@ mod tests {
         for (channels, pixels, offset) in
             [(1, 50, 0.0), (5, 300, 2.0), (16, 5000, -1.0), (37, 1100, 30.0), (64, 1, 0.0)]
         {
-            for relu in [false, true] {
+            for activation in
+                [Unary::Identity, Unary::Relu, Unary::Clip { low: 0.0, high: 0.6 }, Unary::Swish]
+            {
                 let x: Vec<f32> = random(channels * pixels, 1).into_iter().map(|x| x + offset).collect();
                 let (dy, gamma) = (random(x.len(), 2), random(channels, 3));
                 // Never zero, where a single pixel would lie at the kink of ReLU.
                 let beta: Vec<f32> = random(channels, 4).into_iter().map(|beta| beta + 0.3003).collect();
-                let norm = BatchNormalization { gamma: &gamma, beta: &beta, epsilon: 1e-5, relu };
+                let norm = BatchNormalization { gamma: &gamma, beta: &beta, epsilon: 1e-5, activation };
                 let [y_wanted, dx_wanted, dgamma_wanted, dbeta_wanted] = by_definition(&norm, &x, &dy);
                 for isa in Isa::available() {
                     let mut of_one = None;

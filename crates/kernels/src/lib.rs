@@ -53,6 +53,7 @@ mod product;
 mod quantized;
 mod softmax;
 mod unary;
+mod unary_gradient;
 
 pub use activation::Activation;
 pub use arena::{ALIGNMENT, Arena, Number, Region, Rest, Written};

@@ -31,6 +31,7 @@ pub mod layers;
 mod memory;
 mod objective;
 mod opening;
+pub mod operations;
 mod optimizer;
 mod params;
 mod payload;

@@ -7,6 +7,8 @@ use burn::tensor::{Tensor, activation};
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
+use crate::operations::activate;
+
 /// Activation function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -60,13 +62,23 @@ impl Activation {
         }
     }
 
+    /// Slope of [`Activation::LeakyRelu`] for negative values.
+    pub(crate) const LEAKY_SLOPE: f64 = 0.1;
+
     /// Applies the activation to every element.
     pub fn apply<const D: usize>(self, x: Tensor<D>) -> Tensor<D> {
         match self {
             Self::Identity => x,
+            activation => activate(activation, &x).unwrap_or_else(|| activation.by_burn(x)),
+        }
+    }
+
+    fn by_burn<const D: usize>(self, x: Tensor<D>) -> Tensor<D> {
+        match self {
+            Self::Identity => x,
             Self::Relu => activation::relu(x),
             Self::Relu6 => activation::relu6(x),
-            Self::LeakyRelu => activation::leaky_relu(x, 0.1),
+            Self::LeakyRelu => activation::leaky_relu(x, Self::LEAKY_SLOPE),
             Self::HardSwish => activation::hard_swish(x),
             Self::Silu => activation::silu(x),
             Self::Gelu => activation::gelu(x),

@@ -7,6 +7,7 @@ use burn::nn::{BatchNorm, BatchNormConfig, Initializer, PaddingConfig2d};
 use burn::tensor::{Device, Tensor};
 
 use super::activation::Activation;
+use crate::operations::{batch_norm_act, conv2d};
 
 /// Configuration of a [`ConvNormAct`].
 #[derive(Config, Debug)]
@@ -68,6 +69,6 @@ pub struct ConvNormAct {
 impl ConvNormAct {
     /// Returns `[batch, channels, ⌈height / stride⌉, ⌈width / stride⌉]` of `[batch, channels, height, width]`.
     pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        self.activation.apply(self.norm.forward(self.conv.forward(x)))
+        batch_norm_act(&self.norm, self.activation, conv2d(&self.conv, x))
     }
 }

@@ -5,9 +5,11 @@ use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::pool::{MaxPool2d, MaxPool2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, Initializer, Linear, LinearConfig, PaddingConfig2d};
-use burn::tensor::activation::relu;
 use burn::tensor::module::adaptive_avg_pool2d;
 use burn::tensor::{Device, Tensor};
+
+use super::activation::Activation;
+use crate::operations::{batch_norm, batch_norm_act, conv2d};
 
 /// Configuration of a [`ResNet18`].
 #[derive(Config, Debug)]
@@ -89,13 +91,13 @@ impl BasicBlock {
 
     /// Returns `[batch, channels, ⌈height / stride⌉, ⌈width / stride⌉]` of `[batch, channels, height, width]`.
     pub fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let result = relu(self.bn1.forward(self.conv1.forward(x.clone())));
-        let result = self.bn2.forward(self.conv2.forward(result));
+        let result = batch_norm_act(&self.bn1, Activation::Relu, conv2d(&self.conv1, x.clone()));
+        let result = batch_norm(&self.bn2, conv2d(&self.conv2, result));
         let shortcut = match &self.downsample {
-            Some((conv, norm)) => norm.forward(conv.forward(x)),
+            Some((conv, norm)) => batch_norm(norm, conv2d(conv, x)),
             None => x,
         };
-        relu(result + shortcut)
+        Activation::Relu.apply(result + shortcut)
     }
 }
 
@@ -128,7 +130,7 @@ impl ResNet18 {
 
     /// Returns the outputs of the four stages.
     pub fn features(&self, x: Tensor<4>) -> [Tensor<4>; 4] {
-        let x = relu(self.bn1.forward(self.conv1.forward(x)));
+        let x = batch_norm_act(&self.bn1, Activation::Relu, conv2d(&self.conv1, x));
         let x = match &self.pool {
             Some(pool) => pool.forward(x),
             None => x,

@@ -1,0 +1,77 @@
+//! Activation functions.
+
+use burn::backend::Flex;
+use burn::backend::autodiff::checkpoint::base::Checkpointer;
+use burn::backend::autodiff::checkpoint::strategy::NoCheckpointing;
+use burn::backend::autodiff::grads::Gradients;
+use burn::backend::autodiff::ops::{Backward, Ops, OpsKind};
+use burn::tensor::{DType, Tensor};
+use opendr_kernels::Unary;
+
+use super::{Cpu, Trained, channels_last, compute, from_channels_last, numbers, shape, tensor};
+use crate::layers::Activation;
+
+/// Returns the function of the kernels; `None` where they lack its gradient.
+pub(super) fn kernel_of(activation: Activation) -> Option<Unary> {
+    Some(match activation {
+        Activation::Identity => Unary::Identity,
+        Activation::Relu => Unary::Relu,
+        Activation::Relu6 => Unary::Clip { low: 0.0, high: 6.0 },
+        Activation::LeakyRelu => Unary::LeakyRelu { slope: Activation::LEAKY_SLOPE as f32 },
+        Activation::HardSwish => Unary::HardSwish,
+        Activation::Silu => Unary::Swish,
+        Activation::Sigmoid => Unary::Sigmoid,
+        Activation::Tanh => Unary::Tanh,
+        Activation::Gelu => return None,
+    })
+}
+
+/// Returns the activation of a tensor that is trained on the CPU; `None` for others.
+pub(crate) fn activate<const D: usize>(activation: Activation, x: &Tensor<D>) -> Option<Tensor<D>> {
+    let kernel = kernel_of(activation).filter(|_| x.dtype() == DType::F32)?;
+    let own = x.clone().try_into_primitive::<Trained>().ok()?;
+    let from = in_order(own.primitive());
+    let mut y = vec![0.0; numbers(&from).len()];
+    kernel.apply(compute(), numbers(&from), &mut y);
+    let y = as_ordered(own.primitive(), y);
+    // The gradient depends on whether the input lies above a kink, as the output does, which the next layer keeps anyway.
+    let has_kinks = matches!(kernel, Unary::Relu | Unary::Clip { .. } | Unary::LeakyRelu { .. });
+    let kept = if has_kinks { y.clone() } else { own.primitive().clone() };
+    let y = match Activated.prepare::<NoCheckpointing>([own.node()]).compute_bound().stateful() {
+        OpsKind::Tracked(prepared) => prepared.finish((kept, kernel), y),
+        OpsKind::UnTracked(prepared) => prepared.finish(y),
+    };
+    Some(Tensor::from_primitive::<Trained>(y))
+}
+
+/// Returns whether the numbers do not lie with channels last.
+fn is_in_order(tensor: &Cpu) -> bool {
+    tensor.as_slice::<f32>().is_some() || tensor.layout().num_dims() < 3
+}
+
+/// Returns the numbers in the order in which those of a tensor of images lie.
+fn in_order(tensor: &Cpu) -> Cpu {
+    if is_in_order(tensor) { tensor.to_contiguous() } else { channels_last(tensor) }
+}
+
+/// Returns numbers in the order of those of a tensor.
+fn as_ordered(like: &Cpu, all: Vec<f32>) -> Cpu {
+    if is_in_order(like) { tensor(all, shape(like)) } else { from_channels_last(all, &shape(like)) }
+}
+
+#[derive(Debug)]
+struct Activated;
+
+impl Backward<Flex, 1> for Activated {
+    type State = (Cpu, Unary);
+
+    fn backward(self, ops: Ops<(Cpu, Unary), 1>, gradients: &mut Gradients, _: &mut Checkpointer) {
+        let dy = gradients.consume::<Flex>(&ops.node);
+        let ([parent], (kept, kernel)) = (ops.parents, ops.state);
+        let Some(parent) = parent else { return };
+        let dy = if is_in_order(&kept) { dy.to_contiguous() } else { channels_last(&dy) };
+        let mut dx = vec![0.0; numbers(&dy).len()];
+        kernel.backward(compute(), numbers(&in_order(&kept)), numbers(&dy), &mut dx);
+        gradients.register::<Flex>(parent.id, as_ordered(&kept, dx));
+    }
+}

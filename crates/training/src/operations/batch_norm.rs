@@ -1,0 +1,99 @@
+//! Batch normalisation.
+
+use std::sync::Arc;
+
+use burn::backend::Flex;
+use burn::backend::autodiff::NodeId;
+use burn::backend::autodiff::checkpoint::base::Checkpointer;
+use burn::backend::autodiff::checkpoint::strategy::NoCheckpointing;
+use burn::backend::autodiff::grads::Gradients;
+use burn::backend::autodiff::ops::{Backward, Ops, OpsKind};
+use burn::nn::BatchNorm;
+use burn::tensor::{DType, Tensor, TensorData};
+use opendr_kernels::{BatchNormalization, BatchStatistics, Unary};
+
+use super::activate::kernel_of;
+use super::{Cpu, Trained, channels_last, compute, from_channels_last, numbers, shape, tensor};
+use crate::layers::Activation;
+
+/// Returns the normalisation of `[batch, channels, ...]`, as [`BatchNorm::forward`].
+pub fn batch_norm<const D: usize>(layer: &BatchNorm, x: Tensor<D>) -> Tensor<D> {
+    batch_norm_act(layer, Activation::Identity, x)
+}
+
+/// Returns the activation of the normalisation of `[batch, channels, ...]`.
+pub fn batch_norm_act<const D: usize>(layer: &BatchNorm, activation: Activation, x: Tensor<D>) -> Tensor<D> {
+    let own = kernel_of(activation).and_then(|kernel| train(layer, &x, kernel));
+    own.unwrap_or_else(|| activation.apply(layer.forward(x)))
+}
+
+/// Normalises by the statistics of the batch, and updates the running ones, where the tensor is trained on the CPU.
+fn train<const D: usize>(layer: &BatchNorm, x: &Tensor<D>, activation: Unary) -> Option<Tensor<D>> {
+    if !layer.training.is_enabled() || x.dtype() != DType::F32 {
+        return None;
+    }
+    let device = x.device();
+    let own = x.clone().try_into_primitive::<Trained>().ok()?;
+    let gamma = layer.gamma.val().try_into_primitive::<Trained>().ok()?;
+    let beta = layer.beta.val().try_into_primitive::<Trained>().ok()?;
+    let epsilon = layer.epsilon as f32;
+    let pixels = channels_last(own.primitive());
+    let (of_gamma, of_beta) = (gamma.primitive().to_contiguous(), beta.primitive().to_contiguous());
+    let norm = BatchNormalization { gamma: numbers(&of_gamma), beta: numbers(&of_beta), epsilon, activation };
+    let mut y = vec![0.0; numbers(&pixels).len()];
+    let statistics = Arc::new(norm.forward(compute(), numbers(&pixels), &mut y));
+    let y = from_channels_last(y, &shape(own.primitive()));
+    let nodes = [own.node(), gamma.node(), beta.node()];
+    let y = match Normalized.prepare::<NoCheckpointing>(nodes).compute_bound().stateful() {
+        OpsKind::Tracked(mut prepared) => {
+            let inputs = [&own, &gamma, &beta].map(|tensor| prepared.checkpoint(tensor));
+            prepared.finish(State { inputs, statistics: Arc::clone(&statistics), epsilon, activation }, y)
+        }
+        OpsKind::UnTracked(prepared) => prepared.finish(y),
+    };
+    for (running, batch) in
+        [(&layer.running_mean, &statistics.mean), (&layer.running_var, &statistics.variance)]
+    {
+        let batch = Tensor::<1>::from_data(TensorData::new(batch.clone(), [batch.len()]), &device);
+        let value = running.value_sync().to_device(&device).mul_scalar(1.0 - layer.momentum);
+        running.update(value.add(batch.mul_scalar(layer.momentum)).detach());
+    }
+    Some(Tensor::from_primitive::<Trained>(y))
+}
+
+#[derive(Debug, Clone)]
+struct State {
+    /// Input, gamma and beta.
+    inputs: [NodeId; 3],
+    statistics: Arc<BatchStatistics>,
+    epsilon: f32,
+    activation: Unary,
+}
+
+#[derive(Debug)]
+struct Normalized;
+
+impl Backward<Flex, 3> for Normalized {
+    type State = State;
+
+    fn backward(self, ops: Ops<State, 3>, gradients: &mut Gradients, checkpointer: &mut Checkpointer) {
+        let dy = channels_last(&gradients.consume::<Flex>(&ops.node));
+        let State { inputs, statistics, epsilon, activation } = ops.state;
+        let [x, gamma, beta] = inputs.map(|node| checkpointer.retrieve_node_output::<Cpu>(node));
+        let pixels = channels_last(&x);
+        let (gamma, beta) = (gamma.to_contiguous(), beta.to_contiguous());
+        let norm = BatchNormalization { gamma: numbers(&gamma), beta: numbers(&beta), epsilon, activation };
+        let mut dx = vec![0.0; numbers(&pixels).len()];
+        let [dgamma, dbeta] = norm.backward(compute(), numbers(&pixels), &statistics, numbers(&dy), &mut dx);
+        let [of_x, of_gamma, of_beta] = ops.parents;
+        if let Some(node) = of_x {
+            gradients.register::<Flex>(node.id, from_channels_last(dx, &shape(&x)));
+        }
+        for (node, gradient) in [(of_gamma, dgamma), (of_beta, dbeta)] {
+            if let Some(node) = node {
+                let channels = gradient.len();
+                gradients.register::<Flex>(node.id, tensor(gradient, [channels]));
+            }
+        }
+    }
+}
