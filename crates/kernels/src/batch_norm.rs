@@ -81,7 +81,7 @@ impl BatchNormalization<'_> {
         statistics
     }
 
-    /// Computes the gradient of the input from that of the output, and returns those of `gamma` and `beta`.
+    /// Replaces the gradient of the output by that of the input, and returns those of `gamma` and `beta`.
     ///
     /// # Panics
     /// When the lengths do not match.
@@ -90,11 +90,9 @@ impl BatchNormalization<'_> {
         compute: &Compute,
         x: &[f32],
         statistics: &BatchStatistics,
-        dy: &[f32],
-        dx: &mut [f32],
+        dy: &mut [f32],
     ) -> [Vec<f32>; 2] {
         self.check(x, dy);
-        self.check(x, dx);
         let channels = self.channels();
         let is_whole = statistics.mean.len() == channels && statistics.variance.len() == channels;
         assert!(is_whole, "one mean and variance per channel");
@@ -105,8 +103,9 @@ impl BatchNormalization<'_> {
         let padded = affine.scale.len();
         let mut mean = statistics.mean.clone();
         mean.resize(padded, 0.0);
+        let all = &*dy;
         let sums = chunk_sums(compute, x.len(), channels, |isa, pixels, to| {
-            let (x, dy) = (&x[pixels.clone()], &dy[pixels]);
+            let (x, dy) = (&x[pixels.clone()], &all[pixels]);
             // SAFETY: both have whole pixels; factors and terms are filled up.
             unsafe { dispatch_gradients(isa, x, dy, &affine, &mean, self, to) };
         });
@@ -133,11 +132,10 @@ impl BatchNormalization<'_> {
             dgamma[channel] = (of_products[channel] * inverse.sqrt()) as f32;
         }
         let at_once = pixels_of_chunk(channels) * channels;
-        compute.pool().run_on_pieces(dx, at_once, |chunk, dx| {
-            let pixels = chunk * at_once..chunk * at_once + dx.len();
-            let (x, dy) = (&x[pixels.clone()], &dy[pixels]);
-            // SAFETY: all have whole pixels; factors and terms are filled up.
-            unsafe { dispatch_combine(compute.isa(), [x, dy], dx, &affine, [&slope, &term], self) };
+        compute.pool().run_on_pieces(dy, at_once, |chunk, dy| {
+            let x = &x[chunk * at_once..][..dy.len()];
+            // SAFETY: both have whole pixels; factors and terms are filled up.
+            unsafe { dispatch_combine(compute.isa(), x, dy, &affine, [&slope, &term], self) };
         });
         [dgamma, of_dy.into_iter().map(|sum| sum as f32).collect()]
     }
@@ -200,7 +198,8 @@ for_every_isa!(fn dispatch_moments = moments(x: &[f32], channels: usize, to: &mu
 #[inline(always)]
 unsafe fn moments<V: Lanes>(x: &[f32], channels: usize, to: &mut [f32]) {
     let padded = to.len() / 2;
-    for_registers::<V>(channels, |channel, count| {
+    for channel in (0..channels).step_by(V::WIDTH) {
+        let count = (channels - channel).min(V::WIDTH);
         // SAFETY: channels and pixels lie within the slices.
         unsafe {
             let first = load::<V>(x.as_ptr().add(channel), count);
@@ -215,13 +214,6 @@ unsafe fn moments<V: Lanes>(x: &[f32], channels: usize, to: &mut [f32]) {
             sum.store(to.as_mut_ptr().add(channel));
             squares.store(to.as_mut_ptr().add(padded + channel));
         }
-    });
-}
-
-#[inline(always)]
-fn for_registers<V: Lanes>(channels: usize, mut each: impl FnMut(usize, usize)) {
-    for channel in (0..channels).step_by(V::WIDTH) {
-        each(channel, (channels - channel).min(V::WIDTH));
     }
 }
 
@@ -243,7 +235,8 @@ for_every_isa!(fn dispatch_normalize = normalize(x: &[f32], y: &mut [f32], affin
 unsafe fn normalize<V: Lanes>(x: &[f32], y: &mut [f32], affine: &Affine, norm: &BatchNormalization<'_>) {
     let channels = norm.channels();
     for pixel in (0..x.len()).step_by(channels) {
-        for_registers::<V>(channels, |channel, count| {
+        for channel in (0..channels).step_by(V::WIDTH) {
+            let count = (channels - channel).min(V::WIDTH);
             // SAFETY: channels and pixels lie within the slices.
             unsafe {
                 let scale = V::load(affine.scale.as_ptr().add(channel));
@@ -251,7 +244,7 @@ unsafe fn normalize<V: Lanes>(x: &[f32], y: &mut [f32], affine: &Affine, norm: &
                 let value = load::<V>(x.as_ptr().add(pixel + channel), count).mul_add(scale, shift);
                 store(norm.activation.of(value), y.as_mut_ptr().add(pixel + channel), count);
             }
-        });
+        }
     }
 }
 
@@ -268,7 +261,8 @@ unsafe fn gradients<V: Lanes>(
     to: &mut [f32],
 ) {
     let (channels, padded) = (norm.channels(), to.len() / 2);
-    for_registers::<V>(channels, |channel, count| {
+    for channel in (0..channels).step_by(V::WIDTH) {
+        let count = (channels - channel).min(V::WIDTH);
         // SAFETY: channels and pixels lie within the slices.
         unsafe {
             let scale = V::load(affine.scale.as_ptr().add(channel));
@@ -288,7 +282,7 @@ unsafe fn gradients<V: Lanes>(
             sum.store(to.as_mut_ptr().add(channel));
             products.store(to.as_mut_ptr().add(padded + channel));
         }
-    });
+    }
 }
 
 /// Returns the gradient before the activation function.
@@ -298,19 +292,20 @@ unsafe fn before_activation<V: Lanes>(dy: V, x: V, scale: V, shift: V, activatio
     unsafe { activation.backward_of(x.mul_add(scale, shift), dy) }
 }
 
-for_every_isa!(fn dispatch_combine = combine(from: [&[f32]; 2], dx: &mut [f32], affine: &Affine, line: [&[f32]; 2], norm: &BatchNormalization<'_>));
+for_every_isa!(fn dispatch_combine = combine(x: &[f32], dy: &mut [f32], affine: &Affine, line: [&[f32]; 2], norm: &BatchNormalization<'_>));
 
 #[inline(always)]
 unsafe fn combine<V: Lanes>(
-    [x, dy]: [&[f32]; 2],
-    dx: &mut [f32],
+    x: &[f32],
+    dy: &mut [f32],
     affine: &Affine,
     [slope, term]: [&[f32]; 2],
     norm: &BatchNormalization<'_>,
 ) {
     let channels = norm.channels();
     for pixel in (0..x.len()).step_by(channels) {
-        for_registers::<V>(channels, |channel, count| {
+        for channel in (0..channels).step_by(V::WIDTH) {
+            let count = (channels - channel).min(V::WIDTH);
             // SAFETY: channels and pixels lie within the slices.
             unsafe {
                 let scale = V::load(affine.scale.as_ptr().add(channel));
@@ -321,9 +316,9 @@ unsafe fn combine<V: Lanes>(
                 let gradient = load::<V>(dy.as_ptr().add(pixel + channel), count);
                 let gradient = before_activation(gradient, value, scale, shift, norm.activation);
                 let whole = gradient.mul_add(scale, value.mul_add(slope, term));
-                store(whole, dx.as_mut_ptr().add(pixel + channel), count);
+                store(whole, dy.as_mut_ptr().add(pixel + channel), count);
             }
-        });
+        }
     }
 }
 
@@ -404,9 +399,9 @@ mod tests {
                     let mut of_one = None;
                     for threads in [1, 3] {
                         let compute = Compute::new(isa, Arc::new(WorkerPool::new(threads)));
-                        let (mut y, mut dx) = (vec![9.0; x.len()], vec![9.0; x.len()]);
+                        let (mut y, mut dx) = (vec![9.0; x.len()], dy.clone());
                         let statistics = norm.forward(&compute, &x, &mut y);
-                        let [dgamma, dbeta] = norm.backward(&compute, &x, &statistics, &dy, &mut dx);
+                        let [dgamma, dbeta] = norm.backward(&compute, &x, &statistics, &mut dx);
                         let what = format!("{channels} channels, {pixels} pixels, {isa}");
                         assert_near(&y, &y_wanted, &what);
                         if pixels > 1 {

@@ -22,20 +22,19 @@ impl Unary {
         )
     }
 
-    /// Writes the gradient of the input `x` from that of the output. At a kink it is that of the side where it is zero.
+    /// Replaces the gradient of the output by that of the input `x`. At a kink it is that of the side where it is zero.
     ///
     /// # Panics
     /// When the lengths differ, or the function is not differentiable here.
-    pub fn backward(self, compute: &Compute, x: &[f32], dy: &[f32], dx: &mut [f32]) {
+    pub fn backward(self, compute: &Compute, x: &[f32], dy: &mut [f32]) {
         const PIECE: usize = 1 << 14;
-        assert!(x.len() == dy.len() && x.len() == dx.len(), "all must have equal lengths");
+        assert_eq!(x.len(), dy.len(), "both must have equal lengths");
         assert!(self.is_differentiable(), "{self:?} has no gradient");
         let isa = compute.isa();
-        compute.pool().run_on_pieces(dx, PIECE, |index, dx| {
-            let range = index * PIECE..index * PIECE + dx.len();
-            let (x, dy) = (&x[range.clone()], &dy[range]);
+        compute.pool().run_on_pieces(dy, PIECE, |index, dy| {
+            let x = &x[index * PIECE..][..dy.len()];
             // SAFETY: the slices have equal lengths.
-            unsafe { dispatch_backward(isa, self, x, dy, dx) }
+            unsafe { dispatch_backward(isa, self, x, dy) }
         });
     }
 
@@ -81,23 +80,23 @@ impl Unary {
     }
 }
 
-for_every_isa!(fn dispatch_backward = backward_all(unary: Unary, x: &[f32], dy: &[f32], dx: &mut [f32]));
+for_every_isa!(fn dispatch_backward = backward_all(unary: Unary, x: &[f32], dy: &mut [f32]));
 
 /// # Safety
 /// The slices have equal lengths.
 #[inline(always)]
-unsafe fn backward_all<V: Lanes>(unary: Unary, x: &[f32], dy: &[f32], dx: &mut [f32]) {
-    let length = dx.len();
+unsafe fn backward_all<V: Lanes>(unary: Unary, x: &[f32], dy: &mut [f32]) {
+    let length = dy.len();
     for at in (0..length).step_by(V::WIDTH) {
         let count = (length - at).min(V::WIDTH);
         // SAFETY: `count` numbers lie behind `at`.
         unsafe {
-            let (x, dy) = (x.as_ptr().add(at), dy.as_ptr().add(at));
+            let (x, dy) = (x.as_ptr().add(at), dy.as_mut_ptr().add(at));
             if count == V::WIDTH {
-                unary.backward_of(V::load(x), V::load(dy)).store(dx.as_mut_ptr().add(at));
+                unary.backward_of(V::load(x), V::load(dy)).store(dy);
             } else {
                 let value = unary.backward_of(V::load_some(x, count), V::load_some(dy, count));
-                value.store_some(dx.as_mut_ptr().add(at), count);
+                value.store_some(dy, count);
             }
         }
     }
@@ -136,8 +135,8 @@ mod tests {
             };
             for isa in Isa::available() {
                 let compute = Compute::new(isa, Arc::new(WorkerPool::new(2)));
-                let mut dx = vec![9.0; x.len()];
-                function.backward(&compute, &x, &dy, &mut dx);
+                let mut dx = dy.clone();
+                function.backward(&compute, &x, &mut dx);
                 for ((x, dy), dx) in x.iter().zip(&dy).zip(dx) {
                     let wanted = slope(*x) * dy;
                     assert!((dx - wanted).abs() < 6e-3, "{function:?} of {x}, {isa}: {dx}, not {wanted}");

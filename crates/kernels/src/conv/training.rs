@@ -173,7 +173,7 @@ impl TrainingConvolution {
                         ..whole_x
                     },
                 };
-                let weights = self.transposed(weights, &row.taps, &column.taps);
+                let weights = self.transposed(compute, weights, &row.taps, &column.taps);
                 let from = begin[0] * whole_y.row + begin[1] * whole_y.pixel;
                 let to = row_index * whole_x.row + column_index * whole_x.pixel;
                 self.run(
@@ -189,20 +189,20 @@ impl TrainingConvolution {
     }
 
     /// Returns weights of these taps, `[channels, outputs / groups, rows, columns]`.
-    fn transposed(&self, weights: &[f32], rows: &[usize], columns: &[usize]) -> Vec<f32> {
+    fn transposed(&self, compute: &Compute, weights: &[f32], rows: &[usize], columns: &[usize]) -> Vec<f32> {
         let (inputs, outputs) = (self.group_channels(), self.group_outputs());
-        let taps = self.taps();
-        let mut all = Vec::with_capacity(self.channels * outputs * rows.len() * columns.len());
-        for group in 0..self.groups {
-            for input in 0..inputs {
-                for output in 0..outputs {
-                    let from = &weights[((group * outputs + output) * inputs + input) * taps..][..taps];
-                    for row in rows {
-                        all.extend(columns.iter().map(|column| from[row * self.window.kernel[1] + column]));
-                    }
-                }
+        let (taps, own) = (self.taps(), rows.len() * columns.len());
+        let width = self.window.kernel[1];
+        let order: Vec<usize> =
+            rows.iter().flat_map(|row| columns.iter().map(move |column| row * width + column)).collect();
+        let mut all = vec![0.0; self.channels * outputs * own];
+        compute.pool().run_on_pieces(&mut all, outputs * own, |channel, all| {
+            let (group, input) = (channel / inputs, channel % inputs);
+            for (output, to) in all.chunks_mut(own).enumerate() {
+                let from = &weights[((group * outputs + output) * inputs + input) * taps..][..taps];
+                to.iter_mut().zip(&order).for_each(|(to, &tap)| *to = from[tap]);
             }
-        }
+        });
         all
     }
 

@@ -8,7 +8,10 @@ use burn::backend::autodiff::ops::{Backward, Ops, OpsKind};
 use burn::tensor::{DType, Tensor};
 use opendr_kernels::Unary;
 
-use super::{Cpu, Trained, channels_last, compute, from_channels_last, numbers, shape, tensor};
+use super::{
+    Cpu, Trained, channels_last, channels_last_of, channels_second, compute, contiguous, from_channels_last,
+    numbers, shape, tensor,
+};
 use crate::layers::Activation;
 
 /// Returns the function of the kernels; `None` where they lack its gradient.
@@ -69,9 +72,9 @@ impl Backward<Flex, 1> for Activated {
         let dy = gradients.consume::<Flex>(&ops.node);
         let ([parent], (kept, kernel)) = (ops.parents, ops.state);
         let Some(parent) = parent else { return };
-        let dy = if is_in_order(&kept) { dy.to_contiguous() } else { channels_last(&dy) };
-        let mut dx = vec![0.0; numbers(&dy).len()];
-        kernel.backward(compute(), numbers(&in_order(&kept)), numbers(&dy), &mut dx);
-        gradients.register::<Flex>(parent.id, as_ordered(&kept, dx));
+        let is_in_order = is_in_order(&kept);
+        let mut dy = if is_in_order { contiguous(dy) } else { channels_last_of(dy) };
+        kernel.backward(compute(), numbers(&in_order(&kept)), dy.storage_mut());
+        gradients.register::<Flex>(parent.id, if is_in_order { dy } else { channels_second(&dy) });
     }
 }

@@ -13,7 +13,10 @@ use burn::tensor::{DType, Tensor, TensorData};
 use opendr_kernels::{BatchNormalization, BatchStatistics, Unary};
 
 use super::activate::kernel_of;
-use super::{Cpu, Trained, channels_last, compute, from_channels_last, numbers, shape, tensor};
+use super::{
+    Cpu, Trained, channels_last, channels_last_of, channels_second, compute, from_channels_last, numbers,
+    shape, tensor,
+};
 use crate::layers::Activation;
 
 /// Returns the normalisation of `[batch, channels, ...]`, as [`BatchNorm::forward`].
@@ -77,17 +80,16 @@ impl Backward<Flex, 3> for Normalized {
     type State = State;
 
     fn backward(self, ops: Ops<State, 3>, gradients: &mut Gradients, checkpointer: &mut Checkpointer) {
-        let dy = channels_last(&gradients.consume::<Flex>(&ops.node));
+        let mut dy = channels_last_of(gradients.consume::<Flex>(&ops.node));
         let State { inputs, statistics, epsilon, activation } = ops.state;
         let [x, gamma, beta] = inputs.map(|node| checkpointer.retrieve_node_output::<Cpu>(node));
         let pixels = channels_last(&x);
         let (gamma, beta) = (gamma.to_contiguous(), beta.to_contiguous());
         let norm = BatchNormalization { gamma: numbers(&gamma), beta: numbers(&beta), epsilon, activation };
-        let mut dx = vec![0.0; numbers(&pixels).len()];
-        let [dgamma, dbeta] = norm.backward(compute(), numbers(&pixels), &statistics, numbers(&dy), &mut dx);
+        let [dgamma, dbeta] = norm.backward(compute(), numbers(&pixels), &statistics, dy.storage_mut());
         let [of_x, of_gamma, of_beta] = ops.parents;
         if let Some(node) = of_x {
-            gradients.register::<Flex>(node.id, from_channels_last(dx, &shape(&x)));
+            gradients.register::<Flex>(node.id, channels_second(&dy));
         }
         for (node, gradient) in [(of_gamma, dgamma), (of_beta, dbeta)] {
             if let Some(node) = node {

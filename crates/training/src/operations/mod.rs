@@ -54,6 +54,24 @@ fn channels_last(tensor: &Cpu) -> Cpu {
     tensor.permute(&channels_last_axes(tensor.layout().num_dims())).to_contiguous()
 }
 
+/// Returns [`channels_last`] in memory that is not shared where the tensor's is not.
+fn channels_last_of(tensor: Cpu) -> Cpu {
+    let permuted = tensor.permute(&channels_last_axes(tensor.layout().num_dims()));
+    drop(tensor);
+    contiguous(permuted)
+}
+
+/// Returns the tensor with its numbers in the order of its shape, and none beside these, to write.
+fn contiguous(tensor: Cpu) -> Cpu {
+    let is_whole = tensor.as_slice::<f32>().is_some_and(|all| all.len() == tensor.storage::<f32>().len());
+    if is_whole { tensor } else { Cpu::from_data(tensor.into_data()) }
+}
+
+/// Returns a view of a tensor with channels last whose channels come second.
+fn channels_second(tensor: &Cpu) -> Cpu {
+    tensor.permute(&channels_second_axes(tensor.layout().num_dims()))
+}
+
 /// Returns the numbers of a tensor that is contiguous.
 #[expect(clippy::expect_used, reason = "callers pass contiguous tensors of 32-bit floats")]
 fn numbers(tensor: &Cpu) -> &[f32] {
@@ -68,7 +86,7 @@ fn tensor(numbers: Vec<f32>, shape: impl Into<Vec<usize>>) -> Cpu {
 /// Returns a tensor whose channels come second, of numbers with channels last; `shape` is that of the result.
 fn from_channels_last(numbers: Vec<f32>, shape: &[usize]) -> Cpu {
     let in_memory: Vec<usize> = channels_last_axes(shape.len()).into_iter().map(|axis| shape[axis]).collect();
-    tensor(numbers, in_memory).permute(&channels_second_axes(shape.len()))
+    channels_second(&tensor(numbers, in_memory))
 }
 
 /// Returns the sizes of a tensor.
