@@ -13,7 +13,9 @@ use crate::compute::Compute;
 use crate::isa::{Isa, for_every_isa};
 use crate::lanes::{Lanes, MAX_WIDTH};
 
-/// Numbers of input and output that the sums of a block read: they stay in the L2 cache while all weights pass.
+/// Pixels of a block: two registers of each stay in the L1 cache while the sums of all rows pass.
+const BLOCK_PIXELS: usize = 256;
+/// Numbers of input and output that the sums of a block of a depthwise convolution read: they stay in the L2 cache.
 const BLOCK: usize = 1 << 17;
 /// Pixels from which on Winograd's transforms of the weights cost less than they save.
 const WINOGRAD_PIXELS: usize = 512;
@@ -425,29 +427,35 @@ for_every_isa!(fn dispatch_dense = dense_sums(sums: &Sums<'_>, work: &Work<'_>))
 /// The tensors have the sizes of the convolution; nothing else uses the rows of the items.
 #[inline(always)]
 unsafe fn dense_sums<V: Lanes>(sums: &Sums<'_>, work: &Work<'_>) {
-    let conv = sums.conv;
-    let taps = conv.taps();
-    let at_once = sums.rows_of_block(conv.group_channels() + conv.group_outputs());
+    let at_once = (BLOCK_PIXELS / sums.conv.window.output[1].max(1)).clamp(1, sums.rows());
     for first in (0..sums.rows()).step_by(at_once) {
         let rows = first..(first + at_once).min(sums.rows());
-        for item in work.items.clone() {
-            let (group, item) = (item / (work.tiles.len() * taps), item % (work.tiles.len() * taps));
-            let ([row, count], tap) = (work.tiles[item / taps], item % taps);
-            // SAFETY: the tile lies within the sums.
+        // The registers of these columns stay in the L1 cache while all rows pass.
+        for column in (0..work.columns).step_by(2 * V::WIDTH) {
+            let left = work.columns - column;
+            let strip = Strip { rows: &rows, column, tail: None };
+            // SAFETY: the columns are filled up to whole registers.
             unsafe {
-                let to = work.to.add((group * taps + tap) * work.plane + row * work.padded);
-                let tile = Tile { group, tap, row, to };
-                match count {
-                    12 => dense_tile::<V, 12>(sums, work, &rows, &tile),
-                    8 => dense_tile::<V, 8>(sums, work, &rows, &tile),
-                    6 => dense_tile::<V, 6>(sums, work, &rows, &tile),
-                    4 => dense_tile::<V, 4>(sums, work, &rows, &tile),
-                    2 => dense_tile::<V, 2>(sums, work, &rows, &tile),
-                    _ => dense_tile::<V, 1>(sums, work, &rows, &tile),
+                if left >= 2 * V::WIDTH {
+                    strip_sums::<V, 2>(sums, work, &strip);
+                } else if left > V::WIDTH {
+                    strip_sums::<V, 2>(sums, work, &Strip { tail: Some(left - V::WIDTH), ..strip });
+                } else {
+                    let tail = (left < V::WIDTH).then_some(left);
+                    strip_sums::<V, 1>(sums, work, &Strip { tail, ..strip });
                 }
             }
         }
     }
+}
+
+/// Registers of columns of a block of pixels.
+struct Strip<'a> {
+    /// Rows of the output.
+    rows: &'a Range<usize>,
+    column: usize,
+    /// Number of columns in the last register, unless it is full.
+    tail: Option<usize>,
 }
 
 /// Rows of the sums of a tap.
@@ -459,40 +467,37 @@ struct Tile {
 }
 
 #[inline(always)]
-unsafe fn dense_tile<V: Lanes, const R: usize>(
-    sums: &Sums<'_>,
-    work: &Work<'_>,
-    rows: &Range<usize>,
-    tile: &Tile,
-) {
-    let mut column = 0;
-    while column < work.columns {
-        let left = work.columns - column;
-        // SAFETY: the columns are filled up to whole registers.
+unsafe fn strip_sums<V: Lanes, const N: usize>(sums: &Sums<'_>, work: &Work<'_>, strip: &Strip<'_>) {
+    let taps = sums.conv.taps();
+    for item in work.items.clone() {
+        let (group, item) = (item / (work.tiles.len() * taps), item % (work.tiles.len() * taps));
+        let ([row, count], tap) = (work.tiles[item / taps], item % taps);
+        // SAFETY: the tile lies within the sums.
         unsafe {
-            if left > V::WIDTH {
-                let tail = (left < 2 * V::WIDTH).then_some(left - V::WIDTH);
-                columns::<V, R, 2>(sums, work, rows, tile, column, tail);
-                column += 2 * V::WIDTH;
-            } else {
-                columns::<V, R, 1>(sums, work, rows, tile, column, (left < V::WIDTH).then_some(left));
-                column += V::WIDTH;
+            let to = work.to.add((group * taps + tap) * work.plane + row * work.padded);
+            let tile = Tile { group, tap, row, to };
+            match count {
+                12 => columns::<V, 12, N>(sums, work, strip, &tile),
+                8 => columns::<V, 8, N>(sums, work, strip, &tile),
+                6 => columns::<V, 6, N>(sums, work, strip, &tile),
+                4 => columns::<V, 4, N>(sums, work, strip, &tile),
+                2 => columns::<V, 2, N>(sums, work, strip, &tile),
+                _ => columns::<V, 1, N>(sums, work, strip, &tile),
             }
         }
     }
 }
 
-/// Adds the products of `R` rows and `N` registers of columns; `tail` is the number of columns in the last one.
+/// Adds the products of `R` rows and `N` registers of columns.
 #[inline(always)]
 unsafe fn columns<V: Lanes, const R: usize, const N: usize>(
     sums: &Sums<'_>,
     work: &Work<'_>,
-    rows: &Range<usize>,
+    strip: &Strip<'_>,
     tile: &Tile,
-    column: usize,
-    tail: Option<usize>,
 ) {
     let conv = sums.conv;
+    let &Strip { rows, column, tail } = strip;
     let x_step = conv.window.strides[1] * conv.channels;
     let (x_group, dy_group) = (tile.group * conv.group_channels(), tile.group * conv.group_outputs());
     // SAFETY: rows and columns lie within the pixels and the sums.
