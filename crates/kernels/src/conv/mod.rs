@@ -9,11 +9,14 @@ mod geometry;
 mod pair;
 mod phases;
 mod piece;
+mod pixel_products;
 #[cfg(test)]
 mod tests;
 mod tile;
 mod training;
+mod weight_gradient;
 mod winograd;
+mod winograd_gradient;
 
 pub use depthwise::{DepthwiseConvolution, DepthwiseFilters};
 pub use filters::Filters;

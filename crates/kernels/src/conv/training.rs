@@ -7,14 +7,14 @@ use super::depthwise::{DepthwiseConvolution, DepthwiseFilters};
 use super::filters::Filters;
 use super::geometry::{Convolution, Finish, Strides, Window};
 use super::phases::{phases, window_of_phase};
+use super::weight_gradient::weight_gradient;
 use super::winograd::{Winograd, WinogradFilters};
+use super::winograd_gradient::winograd_weight_gradient;
 use crate::aligned::{SUMS, with_buffer};
 use crate::compute::Compute;
 use crate::isa::{Isa, for_every_isa};
 use crate::lanes::{Lanes, MAX_WIDTH};
 
-/// Pixels of a block: two registers of each stay in the L1 cache while the sums of all rows pass.
-const BLOCK_PIXELS: usize = 256;
 /// Numbers of input and output that the sums of a block of a depthwise convolution read: they stay in the L2 cache.
 const BLOCK: usize = 1 << 17;
 /// Pixels from which on Winograd's transforms of the weights cost less than they save.
@@ -60,15 +60,15 @@ impl TrainingConvolution {
         self.outputs * self.group_channels() * self.taps()
     }
 
-    fn taps(&self) -> usize {
+    pub(super) fn taps(&self) -> usize {
         self.window.kernel[0] * self.window.kernel[1]
     }
 
-    fn group_channels(&self) -> usize {
+    pub(super) fn group_channels(&self) -> usize {
         self.channels / self.groups
     }
 
-    fn group_outputs(&self) -> usize {
+    pub(super) fn group_outputs(&self) -> usize {
         self.outputs / self.groups
     }
 
@@ -218,52 +218,13 @@ impl TrainingConvolution {
             dw.fill(0.0);
             return;
         }
-        let sums = Sums::new(self, x, dy);
         if self.is_depthwise() {
-            self.depthwise_weight_gradient(compute, &sums, dw);
+            self.depthwise_weight_gradient(compute, &Sums::new(self, x, dy), dw);
+        } else if self.groups == 1 && Winograd::has_kernel(&self.window, [self.outputs, self.channels]) {
+            winograd_weight_gradient(self, compute, x, dy, dw);
         } else {
-            self.dense_weight_gradient(compute, &sums, dw);
+            weight_gradient(self, compute, x, dy, dw);
         }
-    }
-
-    fn dense_weight_gradient(&self, compute: &Compute, sums: &Sums<'_>, dw: &mut [f32]) {
-        let (inputs, outputs, taps) = (self.group_channels(), self.group_outputs(), self.taps());
-        // Registers lie along the larger side.
-        let along_inputs = inputs >= MAX_WIDTH || inputs >= outputs;
-        let (rows, columns) = if along_inputs { (outputs, inputs) } else { (inputs, outputs) };
-        let padded = columns.next_multiple_of(MAX_WIDTH);
-        let tiles = tiles_of(rows, compute.isa());
-        let plane = rows * padded;
-        let items = self.groups * tiles.len() * taps;
-        let pieces = items.min(4 * compute.pool().threads());
-        with_buffer(&SUMS, self.groups * taps * plane, |all| {
-            all.fill(0.0);
-            let to = Written(all.as_mut_ptr());
-            compute.pool().run(pieces, |piece| {
-                let work = Work {
-                    along_inputs,
-                    padded,
-                    columns,
-                    items: piece * items / pieces..(piece + 1) * items / pieces,
-                    tiles: &tiles,
-                    // SAFETY: the pieces write disjoint rows of sums, which are as long as the items.
-                    to: unsafe { to.at(0) },
-                    plane,
-                };
-                // SAFETY: lengths have been checked.
-                unsafe { dispatch_dense(compute.isa(), sums, &work) };
-            });
-            let all = &*all;
-            compute.pool().run_on_pieces(dw, inputs * taps, |output, dw| {
-                let (group, output) = (output / outputs, output % outputs);
-                for input in 0..inputs {
-                    let at = if along_inputs { output * padded + input } else { input * padded + output };
-                    for (tap, dw) in dw[input * taps..][..taps].iter_mut().enumerate() {
-                        *dw = all[(group * taps + tap) * plane + at];
-                    }
-                }
-            });
-        });
     }
 
     fn depthwise_weight_gradient(&self, compute: &Compute, sums: &Sums<'_>, dw: &mut [f32]) {
@@ -302,28 +263,6 @@ impl Written {
     }
 }
 
-/// Returns first row and number of rows of the tiles of a matrix.
-fn tiles_of(rows: usize, isa: Isa) -> Vec<[usize; 2]> {
-    // SAFETY: it has no conditions.
-    let most = unsafe { dispatch_rows(isa) };
-    let mut tiles = Vec::new();
-    let mut first = 0;
-    while first < rows {
-        let left = rows - first;
-        let count = [most, 8, 4, 2, 1].into_iter().find(|&count| count <= left.min(most)).unwrap_or(1);
-        tiles.push([first, count]);
-        first += count;
-    }
-    tiles
-}
-
-for_every_isa!(fn dispatch_rows = most_rows() -> usize);
-
-#[inline(always)]
-unsafe fn most_rows<V: Lanes>() -> usize {
-    if V::REGISTERS >= 32 { 12 } else { 6 }
-}
-
 /// Input and gradient of the output, whose products are summed over the pixels.
 struct Sums<'a> {
     conv: &'a TrainingConvolution,
@@ -331,8 +270,6 @@ struct Sums<'a> {
     dy: *const f32,
     /// Columns of the output whose tap lies within the input, for each column of taps.
     columns: Vec<[usize; 2]>,
-    /// Whether the pixels of all rows follow each other in both.
-    is_joined: bool,
 }
 
 // SAFETY: what the pointers refer to is only read.
@@ -354,13 +291,7 @@ impl<'a> Sums<'a> {
             let end = (input[1] + pads[1]).checked_sub(at + 1).map_or(0, |last| last / strides[1] + 1);
             [first, end.min(output[1]).max(first)]
         });
-        Self {
-            conv,
-            x: x.as_ptr(),
-            dy: dy.as_ptr(),
-            columns: columns.collect(),
-            is_joined: conv.window.is_pointwise(),
-        }
+        Self { conv, x: x.as_ptr(), dy: dy.as_ptr(), columns: columns.collect() }
     }
 
     /// Returns the number of rows of the output, of all images.
@@ -373,27 +304,17 @@ impl<'a> Sums<'a> {
         (BLOCK / (self.conv.window.output[1] * numbers).max(1)).clamp(1, self.rows())
     }
 
-    /// Returns the pixels of the first rows of a range for a tap, and the rows that follow these.
+    /// Returns the pixels of a row of the output whose tap lies within the input.
     #[inline(always)]
-    unsafe fn run(&self, rows: Range<usize>, tap: usize) -> (Option<Run>, Range<usize>) {
+    unsafe fn run(&self, row: usize, tap: usize) -> Option<Run> {
         let Window { kernel, strides, dilations, pads, input, output } = self.conv.window;
-        let (row, rest) = (rows.start, rows.start + 1..rows.end);
         // SAFETY: pixels lie within the tensors.
         unsafe {
-            if self.is_joined {
-                let pixel = row * output[1];
-                let run = Run {
-                    x: self.x.add(pixel * self.conv.channels),
-                    dy: self.dy.add(pixel * self.conv.outputs),
-                    count: rows.len() * output[1],
-                };
-                return (Some(run), rows.end..rows.end);
-            }
             let (image, line) = (row / output[0], row % output[0]);
             let (ky, kx) = (tap / kernel[1], tap % kernel[1]);
             let [first, end] = self.columns[kx];
             let at = (line * strides[0] + ky * dilations[0]).checked_sub(pads[0]).filter(|&at| at < input[0]);
-            let Some(line) = at.filter(|_| first < end) else { return (None, rest) };
+            let line = at.filter(|_| first < end)?;
             let column = first * strides[1] + kx * dilations[1] - pads[1];
             let pixel = (image * input[0] + line) * input[1] + column;
             let run = Run {
@@ -401,147 +322,7 @@ impl<'a> Sums<'a> {
                 dy: self.dy.add((row * output[1] + first) * self.conv.outputs),
                 count: end - first,
             };
-            (Some(run), rest)
-        }
-    }
-}
-
-/// A share of the sums of a dense convolution.
-struct Work<'a> {
-    /// Whether registers lie along the channels of the input, else along the outputs.
-    along_inputs: bool,
-    /// Columns, filled up to whole registers, and without.
-    padded: usize,
-    columns: usize,
-    /// Items: group by group, tile by tile, tap by tap.
-    items: Range<usize>,
-    tiles: &'a [[usize; 2]],
-    to: *mut f32,
-    /// Numbers of the sums of a tap.
-    plane: usize,
-}
-
-for_every_isa!(fn dispatch_dense = dense_sums(sums: &Sums<'_>, work: &Work<'_>));
-
-/// # Safety
-/// The tensors have the sizes of the convolution; nothing else uses the rows of the items.
-#[inline(always)]
-unsafe fn dense_sums<V: Lanes>(sums: &Sums<'_>, work: &Work<'_>) {
-    let at_once = (BLOCK_PIXELS / sums.conv.window.output[1].max(1)).clamp(1, sums.rows());
-    for first in (0..sums.rows()).step_by(at_once) {
-        let rows = first..(first + at_once).min(sums.rows());
-        // The registers of these columns stay in the L1 cache while all rows pass.
-        for column in (0..work.columns).step_by(2 * V::WIDTH) {
-            let left = work.columns - column;
-            let strip = Strip { rows: &rows, column, tail: None };
-            // SAFETY: the columns are filled up to whole registers.
-            unsafe {
-                if left >= 2 * V::WIDTH {
-                    strip_sums::<V, 2>(sums, work, &strip);
-                } else if left > V::WIDTH {
-                    strip_sums::<V, 2>(sums, work, &Strip { tail: Some(left - V::WIDTH), ..strip });
-                } else {
-                    let tail = (left < V::WIDTH).then_some(left);
-                    strip_sums::<V, 1>(sums, work, &Strip { tail, ..strip });
-                }
-            }
-        }
-    }
-}
-
-/// Registers of columns of a block of pixels.
-struct Strip<'a> {
-    /// Rows of the output.
-    rows: &'a Range<usize>,
-    column: usize,
-    /// Number of columns in the last register, unless it is full.
-    tail: Option<usize>,
-}
-
-/// Rows of the sums of a tap.
-struct Tile {
-    group: usize,
-    tap: usize,
-    row: usize,
-    to: *mut f32,
-}
-
-#[inline(always)]
-unsafe fn strip_sums<V: Lanes, const N: usize>(sums: &Sums<'_>, work: &Work<'_>, strip: &Strip<'_>) {
-    let taps = sums.conv.taps();
-    for item in work.items.clone() {
-        let (group, item) = (item / (work.tiles.len() * taps), item % (work.tiles.len() * taps));
-        let ([row, count], tap) = (work.tiles[item / taps], item % taps);
-        // SAFETY: the tile lies within the sums.
-        unsafe {
-            let to = work.to.add((group * taps + tap) * work.plane + row * work.padded);
-            let tile = Tile { group, tap, row, to };
-            match count {
-                12 => columns::<V, 12, N>(sums, work, strip, &tile),
-                8 => columns::<V, 8, N>(sums, work, strip, &tile),
-                6 => columns::<V, 6, N>(sums, work, strip, &tile),
-                4 => columns::<V, 4, N>(sums, work, strip, &tile),
-                2 => columns::<V, 2, N>(sums, work, strip, &tile),
-                _ => columns::<V, 1, N>(sums, work, strip, &tile),
-            }
-        }
-    }
-}
-
-/// Adds the products of `R` rows and `N` registers of columns.
-#[inline(always)]
-unsafe fn columns<V: Lanes, const R: usize, const N: usize>(
-    sums: &Sums<'_>,
-    work: &Work<'_>,
-    strip: &Strip<'_>,
-    tile: &Tile,
-) {
-    let conv = sums.conv;
-    let &Strip { rows, column, tail } = strip;
-    let x_step = conv.window.strides[1] * conv.channels;
-    let (x_group, dy_group) = (tile.group * conv.group_channels(), tile.group * conv.group_outputs());
-    // SAFETY: rows and columns lie within the pixels and the sums.
-    unsafe {
-        let mut all = [[V::splat(0.0); N]; R];
-        for (r, all) in all.iter_mut().enumerate() {
-            for (n, sum) in all.iter_mut().enumerate() {
-                *sum = V::load(tile.to.add(r * work.padded + column + n * V::WIDTH));
-            }
-        }
-        let mut rows = rows.clone();
-        while !rows.is_empty() {
-            let (run, rest) = sums.run(rows, tile.tap);
-            rows = rest;
-            let Some(Run { x, dy, count }) = run else { continue };
-            let (x, dy) = (x.add(x_group), dy.add(dy_group));
-            let (mut left, left_step, mut right, right_step) = if work.along_inputs {
-                (dy.add(tile.row), conv.outputs, x.add(column), x_step)
-            } else {
-                (x.add(tile.row), x_step, dy.add(column), conv.outputs)
-            };
-            for _ in 0..count {
-                let mut vectors = [V::splat(0.0); N];
-                for (n, vector) in vectors.iter_mut().enumerate() {
-                    let from = right.add(n * V::WIDTH);
-                    *vector = match tail {
-                        Some(count) if n + 1 == N => V::load_some(from, count),
-                        _ => V::load(from),
-                    };
-                }
-                for (r, all) in all.iter_mut().enumerate() {
-                    let factor = V::splat(*left.add(r));
-                    for (sum, vector) in all.iter_mut().zip(vectors) {
-                        *sum = vector.mul_add(factor, *sum);
-                    }
-                }
-                left = left.wrapping_add(left_step);
-                right = right.wrapping_add(right_step);
-            }
-        }
-        for (r, all) in all.iter().enumerate() {
-            for (n, sum) in all.iter().enumerate() {
-                sum.store(tile.to.add(r * work.padded + column + n * V::WIDTH));
-            }
+            Some(run)
         }
     }
 }
@@ -597,11 +378,8 @@ unsafe fn channel_sums<V: Lanes, const N: usize>(
         for (n, sum) in all.iter_mut().enumerate() {
             *sum = V::load(to.add(n * V::WIDTH));
         }
-        let mut rows = rows.clone();
-        while !rows.is_empty() {
-            let (run, rest) = sums.run(rows, tap);
-            rows = rest;
-            let Some(Run { x, dy, count }) = run else { continue };
+        for row in rows.clone() {
+            let Some(Run { x, dy, count }) = sums.run(row, tap) else { continue };
             let (mut x, mut dy) = (x.add(channel), dy.add(channel));
             for _ in 0..count {
                 for (n, sum) in all.iter_mut().enumerate() {

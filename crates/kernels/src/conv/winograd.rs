@@ -15,11 +15,11 @@ use crate::pool::Pieces;
 use crate::unary::Unary;
 
 /// Output pixels of a tile along an axis.
-const TILE: usize = 4;
+pub(super) const TILE: usize = 4;
 /// Input pixels of a tile along an axis.
-const SIZE: usize = TILE + 2;
+pub(super) const SIZE: usize = TILE + 2;
 /// Products per tile, channel and output.
-const PRODUCTS: usize = SIZE * SIZE;
+pub(super) const PRODUCTS: usize = SIZE * SIZE;
 /// Numbers of the transformed tiles and sums of a piece: they stay in the L2 cache.
 const PIECE: usize = 1 << 18;
 /// Output pixels from which on the saved products pay for four times as many weights, when a model opens too.
@@ -284,30 +284,17 @@ for_every_isa!(fn dispatch_patches = transform_patches(job: &Job<'_>, tiles: [us
 #[inline(always)]
 unsafe fn transform_patches<V: Lanes>(job: &Job<'_>, [first, end]: [usize; 2], to: *mut f32) {
     let (window, channels) = (&job.conv.window, job.conv.filters.channels);
-    let [height, width] = window.input;
     let step = (end - first) * channels;
     for tile in first..end {
         let (image, [row, column]) = job.place(tile);
         let (top, left) = (row as isize - window.pads[0] as isize, column as isize - window.pads[1] as isize);
+        let plane = Plane { start: job.x, image, size: window.input, channels };
         for channel in (0..channels).step_by(V::WIDTH) {
             let count = (channels - channel).min(V::WIDTH);
             // SAFETY: pixels outside of the input are not read.
             unsafe {
-                let mut patch = [[V::splat(0.0); SIZE]; SIZE];
-                for (i, line) in patch.iter_mut().enumerate() {
-                    let y = top + i as isize;
-                    if y < 0 || y >= height as isize {
-                        continue;
-                    }
-                    let pixels = job.x.add((image * height + y as usize) * width * channels + channel);
-                    for (j, value) in line.iter_mut().enumerate() {
-                        let x = left + j as isize;
-                        if x >= 0 && x < width as isize {
-                            let from = pixels.add(x as usize * channels);
-                            *value =
-                                if count == V::WIDTH { V::load(from) } else { V::load_some(from, count) };
-                        }
-                    }
+                let mut patch = plane.patch::<V, SIZE>([top, left], channel, count);
+                for line in &mut patch {
                     *line = of_input(*line);
                 }
                 let to = to.add((tile - first) * channels + channel);
@@ -323,9 +310,49 @@ unsafe fn transform_patches<V: Lanes>(job: &Job<'_>, [first, end]: [usize; 2], t
     }
 }
 
+/// An image of a batch with channels last.
+pub(super) struct Plane {
+    pub(super) start: *const f32,
+    pub(super) image: usize,
+    pub(super) size: [usize; 2],
+    pub(super) channels: usize,
+}
+
+impl Plane {
+    /// Returns a register of channels of each pixel of a square; zeros outside of the image.
+    #[inline(always)]
+    pub(super) unsafe fn patch<V: Lanes, const N: usize>(
+        &self,
+        [top, left]: [isize; 2],
+        channel: usize,
+        count: usize,
+    ) -> [[V; N]; N] {
+        let [height, width] = self.size;
+        // SAFETY: pixels outside of the image are not read.
+        unsafe {
+            let mut patch = [[V::splat(0.0); N]; N];
+            for (i, line) in patch.iter_mut().enumerate() {
+                let y = top + i as isize;
+                if y < 0 || y >= height as isize {
+                    continue;
+                }
+                let row = (self.image * height + y as usize) * width;
+                for (j, value) in line.iter_mut().enumerate() {
+                    let x = left + j as isize;
+                    if x >= 0 && x < width as isize {
+                        let from = self.start.add((row + x as usize) * self.channels + channel);
+                        *value = if count == V::WIDTH { V::load(from) } else { V::load_some(from, count) };
+                    }
+                }
+            }
+            patch
+        }
+    }
+}
+
 /// Returns `B^T d`.
 #[inline(always)]
-unsafe fn of_input<V: Lanes>(d: [V; SIZE]) -> [V; SIZE] {
+pub(super) unsafe fn of_input<V: Lanes>(d: [V; SIZE]) -> [V; SIZE] {
     // SAFETY: passed on.
     unsafe {
         let (four, five, two) = (V::splat(4.0), V::splat(-5.0), V::splat(2.0));
