@@ -23,10 +23,10 @@ fn main() {
                 let mut best = [f64::MAX; 3];
                 for _ in 0..7 {
                     let t = Instant::now();
-                    conv.forward(&compute, &x, &w, None, &mut y);
+                    y = conv.forward(&compute, &x, &w, None);
                     best[0] = best[0].min(t.elapsed().as_secs_f64());
                     let t = Instant::now();
-                    conv.input_gradient(&compute, &w, &y, &mut dx);
+                    dx = conv.input_gradient(&compute, &w, &y);
                     best[1] = best[1].min(t.elapsed().as_secs_f64());
                     let t = Instant::now();
                     conv.weight_gradient(&compute, &x, &y, &mut dw);

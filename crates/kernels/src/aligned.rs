@@ -74,6 +74,31 @@ pub(crate) fn with_buffer<R>(
     })
 }
 
+/// Memory to which threads write disjoint parts.
+pub(crate) struct Output(pub(crate) *mut f32);
+
+// SAFETY: threads write disjoint parts.
+unsafe impl Sync for Output {}
+
+impl Output {
+    /// Returns the pointer to a number.
+    pub(crate) fn at(&self, number: usize) -> *mut f32 {
+        self.0.wrapping_add(number)
+    }
+}
+
+/// Returns `length` numbers that `write` writes.
+///
+/// # Safety
+/// `write` writes every one of them, and reads none before.
+pub(crate) unsafe fn written<R>(length: usize, write: impl FnOnce(*mut f32) -> R) -> (Vec<f32>, R) {
+    let mut numbers = Vec::with_capacity(length);
+    let result = write(numbers.as_mut_ptr());
+    // SAFETY: the caller's promise.
+    unsafe { numbers.set_len(length) };
+    (numbers, result)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

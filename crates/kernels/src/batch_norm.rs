@@ -1,5 +1,6 @@
 //! Batch normalisation of tensors with channels last, with the gradients of a training step.
 
+use crate::aligned::{Output, written};
 use crate::compute::Compute;
 use crate::isa::{Isa, for_every_isa};
 use crate::lanes::{Lanes, MAX_WIDTH};
@@ -60,25 +61,31 @@ impl BatchNormalization<'_> {
         Affine { scale, shift }
     }
 
-    /// Normalises the pixels, and returns their statistics.
+    /// Returns the output of pixels, and their statistics.
     ///
     /// # Panics
     /// When the lengths do not match.
-    pub fn forward(&self, compute: &Compute, x: &[f32], y: &mut [f32]) -> BatchStatistics {
-        self.check(x, y);
+    pub fn forward(&self, compute: &Compute, x: &[f32]) -> (Vec<f32>, BatchStatistics) {
+        self.check(x, x);
         let channels = self.channels();
         if x.is_empty() {
-            return BatchStatistics { mean: vec![0.0; channels], variance: vec![0.0; channels] };
+            let zeros = vec![0.0; channels];
+            return (Vec::new(), BatchStatistics { mean: zeros.clone(), variance: zeros });
         }
         let statistics = statistics(compute, x, channels);
         let affine = self.affine(&statistics);
-        let pixels = pixels_of_chunk(channels);
-        compute.pool().run_on_pieces(y, pixels * channels, |chunk, y| {
-            let x = &x[chunk * pixels * channels..][..y.len()];
-            // SAFETY: both have whole pixels; factors and terms are filled up.
-            unsafe { dispatch_normalize(compute.isa(), x, y, &affine, self) };
-        });
-        statistics
+        let at_once = pixels_of_chunk(channels) * channels;
+        // SAFETY: the chunks write every number of the output.
+        let (y, ()) = unsafe {
+            written(x.len(), |y| {
+                let y = Output(y);
+                compute.pool().run(x.len().div_ceil(at_once), |chunk| {
+                    let x = &x[chunk * at_once..x.len().min((chunk + 1) * at_once)];
+                    dispatch_normalize(compute.isa(), x, y.at(chunk * at_once), &affine, self);
+                });
+            })
+        };
+        (y, statistics)
     }
 
     /// Replaces the gradient of the output by that of the input, and returns those of `gamma` and `beta`.
@@ -229,10 +236,10 @@ unsafe fn store<V: Lanes>(value: V, to: *mut f32, count: usize) {
     unsafe { if count == V::WIDTH { value.store(to) } else { value.store_some(to, count) } }
 }
 
-for_every_isa!(fn dispatch_normalize = normalize(x: &[f32], y: &mut [f32], affine: &Affine, norm: &BatchNormalization<'_>));
+for_every_isa!(fn dispatch_normalize = normalize(x: &[f32], y: *mut f32, affine: &Affine, norm: &BatchNormalization<'_>));
 
 #[inline(always)]
-unsafe fn normalize<V: Lanes>(x: &[f32], y: &mut [f32], affine: &Affine, norm: &BatchNormalization<'_>) {
+unsafe fn normalize<V: Lanes>(x: &[f32], y: *mut f32, affine: &Affine, norm: &BatchNormalization<'_>) {
     let channels = norm.channels();
     for pixel in (0..x.len()).step_by(channels) {
         for channel in (0..channels).step_by(V::WIDTH) {
@@ -242,7 +249,7 @@ unsafe fn normalize<V: Lanes>(x: &[f32], y: &mut [f32], affine: &Affine, norm: &
                 let scale = V::load(affine.scale.as_ptr().add(channel));
                 let shift = V::load(affine.shift.as_ptr().add(channel));
                 let value = load::<V>(x.as_ptr().add(pixel + channel), count).mul_add(scale, shift);
-                store(norm.activation.of(value), y.as_mut_ptr().add(pixel + channel), count);
+                store(norm.activation.of(value), y.add(pixel + channel), count);
             }
         }
     }
@@ -399,8 +406,8 @@ mod tests {
                     let mut of_one = None;
                     for threads in [1, 3] {
                         let compute = Compute::new(isa, Arc::new(WorkerPool::new(threads)));
-                        let (mut y, mut dx) = (vec![9.0; x.len()], dy.clone());
-                        let statistics = norm.forward(&compute, &x, &mut y);
+                        let mut dx = dy.clone();
+                        let (y, statistics) = norm.forward(&compute, &x);
                         let [dgamma, dbeta] = norm.backward(&compute, &x, &statistics, &mut dx);
                         let what = format!("{channels} channels, {pixels} pixels, {isa}");
                         assert_near(&y, &y_wanted, &what);

@@ -89,3 +89,4 @@ pub use quantized::{
 };
 pub use softmax::{categorical_backward, cross_entropy, entropy, log_softmax, log_softmax_backward};
 pub use unary::Unary;
+pub use unary_gradient::add_activated;

@@ -1,10 +1,14 @@
-//! Gradients of activation functions.
+//! Gradients of activation functions, and the activation of a sum.
 
+use crate::aligned::{Output, written};
 use crate::compute::Compute;
 use crate::elementary::{sigmoid, tanh};
 use crate::isa::for_every_isa;
 use crate::lanes::Lanes;
 use crate::unary::Unary;
+
+/// Numbers that a thread computes at a time.
+const PIECE: usize = 1 << 14;
 
 impl Unary {
     /// Returns whether [`Unary::backward`] knows the gradient.
@@ -27,7 +31,6 @@ impl Unary {
     /// # Panics
     /// When the lengths differ, or the function is not differentiable here.
     pub fn backward(self, compute: &Compute, x: &[f32], dy: &mut [f32]) {
-        const PIECE: usize = 1 << 14;
         assert_eq!(x.len(), dy.len(), "both must have equal lengths");
         assert!(self.is_differentiable(), "{self:?} has no gradient");
         let isa = compute.isa();
@@ -80,6 +83,48 @@ impl Unary {
     }
 }
 
+/// Returns the activation of the sum of two tensors.
+///
+/// # Panics
+/// When the lengths differ.
+pub fn add_activated(compute: &Compute, left: &[f32], right: &[f32], activation: Unary) -> Vec<f32> {
+    assert_eq!(left.len(), right.len(), "both must have equal lengths");
+    let length = left.len();
+    // SAFETY: the pieces write every number.
+    unsafe {
+        written(length, |to| {
+            let to = Output(to);
+            compute.pool().run(length.div_ceil(PIECE), |index| {
+                let range = index * PIECE..length.min((index + 1) * PIECE);
+                let to = to.at(range.start);
+                dispatch_sum(compute.isa(), activation, &left[range.clone()], &right[range], to);
+            });
+        })
+        .0
+    }
+}
+
+for_every_isa!(fn dispatch_sum = sum_all(unary: Unary, left: &[f32], right: &[f32], to: *mut f32));
+
+/// # Safety
+/// The slices have equal lengths, which can be written.
+#[inline(always)]
+unsafe fn sum_all<V: Lanes>(unary: Unary, left: &[f32], right: &[f32], to: *mut f32) {
+    for at in (0..left.len()).step_by(V::WIDTH) {
+        let count = (left.len() - at).min(V::WIDTH);
+        // SAFETY: `count` numbers lie behind `at`.
+        unsafe {
+            let (left, right, to) = (left.as_ptr().add(at), right.as_ptr().add(at), to.add(at));
+            if count == V::WIDTH {
+                unary.of(V::load(left).add(V::load(right))).store(to);
+            } else {
+                let sum = V::load_some(left, count).add(V::load_some(right, count));
+                unary.of(sum).store_some(to, count);
+            }
+        }
+    }
+}
+
 for_every_isa!(fn dispatch_backward = backward_all(unary: Unary, x: &[f32], dy: &mut [f32]));
 
 /// # Safety
@@ -109,6 +154,18 @@ mod tests {
     use super::*;
     use crate::isa::Isa;
     use crate::pool::WorkerPool;
+
+    #[test]
+    fn sums_are_activated() {
+        let (left, right): (Vec<f32>, Vec<f32>) =
+            (0..40_003).map(|i| ((i % 17) as f32 - 8.0, (i % 5) as f32 - 2.5)).unzip();
+        for isa in Isa::available() {
+            let compute = Compute::new(isa, Arc::new(WorkerPool::new(2)));
+            let sums = add_activated(&compute, &left, &right, Unary::Relu);
+            let wanted: Vec<f32> = left.iter().zip(&right).map(|(a, b)| (a + b).max(0.0)).collect();
+            assert_eq!(sums, wanted);
+        }
+    }
 
     #[test]
     fn gradients_are_the_slopes_of_the_functions() {

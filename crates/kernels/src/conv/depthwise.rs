@@ -96,14 +96,23 @@ impl DepthwiseConvolution {
     /// # Panics
     /// When the slices are shorter than the shapes and strides require.
     pub fn run(&self, compute: &Compute, x: &[f32], y: &mut [f32]) {
+        // SAFETY: the output has that length.
+        unsafe { self.run_to(compute, x, y.as_mut_ptr(), y.len()) }
+    }
+
+    /// Computes the convolution to `length` numbers, none of which is read before it is written.
+    ///
+    /// # Safety
+    /// The numbers may be written, and nothing else uses them.
+    pub(super) unsafe fn run_to(&self, compute: &Compute, x: &[f32], y: *mut f32, length: usize) {
         if self.is_empty() {
             return;
         }
         self.check(x);
-        assert!(y.len() >= self.reach(self.y, self.window.output), "the output is too short");
+        assert!(length >= self.reach(self.y, self.window.output), "the output is too short");
         let threads = compute.pool().threads();
         let rows = self.window.output[0].div_ceil(if threads == 1 { 1 } else { 4 * threads }).max(1);
-        let job = Job { y: y.as_mut_ptr(), ..self.job(x, rows) };
+        let job = Job { y, ..self.job(x, rows) };
         let isa: Isa = compute.isa();
         // SAFETY: sizes have been checked; pieces write disjoint rows.
         let work = |piece| unsafe { job.run(isa, piece) };

@@ -96,7 +96,8 @@ impl DepthwisePointwise {
                 // SAFETY: pieces write disjoint lines.
                 let y = unsafe { lines.span(first, rows.len()) };
                 let residual = residual.map(|residual| &residual[first * width * outer..]);
-                piece::run(&band, None, between, residual, y);
+                // SAFETY: sizes have been checked.
+                unsafe { piece::run(&band, None, between, residual, y.as_mut_ptr()) };
             });
         });
     }

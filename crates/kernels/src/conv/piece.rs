@@ -45,6 +45,22 @@ impl Convolution {
     /// # Panics
     /// When the slices are shorter than the shapes and strides require.
     pub fn run(&self, compute: &Compute, x: &[f32], residual: Option<&[f32]>, y: &mut [f32]) {
+        // SAFETY: the output has that length.
+        unsafe { self.run_to(compute, x, residual, y.as_mut_ptr(), y.len()) }
+    }
+
+    /// Computes the convolution to `length` numbers, none of which is read before it is written.
+    ///
+    /// # Safety
+    /// The numbers may be written, and nothing else uses them.
+    pub(super) unsafe fn run_to(
+        &self,
+        compute: &Compute,
+        x: &[f32],
+        residual: Option<&[f32]>,
+        y: *mut f32,
+        length: usize,
+    ) {
         let Window { input, output, .. } = self.window;
         let filters = &*self.filters;
         if self.batch == 0 || output.contains(&0) || filters.outputs() == 0 {
@@ -65,7 +81,7 @@ impl Convolution {
             input.contains(&0) || x.len() >= reach(self.x, input, filters.channels()),
             "the input is too short"
         );
-        assert!(y.len() >= reach(self.y, output, filters.outputs()), "the output is too short");
+        assert!(length >= reach(self.y, output, filters.outputs()), "the output is too short");
         if let Some(residual) = residual {
             assert_eq!(self.residual.channel, 1, "the channels of the residual must lie side by side");
             assert!(
@@ -76,17 +92,21 @@ impl Convolution {
         if let Some(slopes) = &self.finish.slopes {
             assert!(slopes.len() >= filters.padded_outputs(), "one slope per output channel, rounded up");
         }
-        run(self, Some(compute.pool()), x, residual, y);
+        // SAFETY: sizes have been checked.
+        unsafe { run(self, Some(compute.pool()), x, residual, y) };
     }
 }
 
-/// Computes a convolution whose sizes have been checked, on the threads of a pool, or on this one.
-pub(super) fn run(
+/// Computes a convolution on the threads of a pool, or on this one.
+///
+/// # Safety
+/// The sizes have been checked; the output may be written, and nothing else uses it.
+pub(super) unsafe fn run(
     conv: &Convolution,
     pool: Option<&WorkerPool>,
     x: &[f32],
     residual: Option<&[f32]>,
-    y: &mut [f32],
+    y: *mut f32,
 ) {
     let mut flat;
     let mut conv = conv;
@@ -117,12 +137,12 @@ pub(super) fn run(
     };
     let mut job = divide(conv, pool.map_or(1, WorkerPool::threads));
     job.x = x.as_ptr();
-    job.y = y.as_mut_ptr();
+    job.y = y;
     job.residual = residual.map_or(std::ptr::null(), <[f32]>::as_ptr);
     job.zeros = if zeros.is_empty() { NOTHING.as_ptr() } else { zeros.as_ptr() };
     let pieces = conv.batch * job.across * job.down * job.shares * conv.filters.groups();
     let isa = conv.filters.isa();
-    // SAFETY: `Convolution::run` has checked all sizes; pieces do not overlap.
+    // SAFETY: all sizes have been checked; pieces do not overlap.
     let work = |piece| unsafe { dispatch_piece(isa, &job, piece) };
     match pool.filter(|_| products(conv) >= PARALLEL_FROM) {
         Some(pool) => pool.run(pieces, work),

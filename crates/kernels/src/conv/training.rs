@@ -10,9 +10,9 @@ use super::phases::{phases, window_of_phase};
 use super::weight_gradient::weight_gradient;
 use super::winograd::{Winograd, WinogradFilters};
 use super::winograd_gradient::winograd_weight_gradient;
-use crate::aligned::{SUMS, with_buffer};
+use crate::aligned::{Output, SUMS, with_buffer, written};
 use crate::compute::Compute;
-use crate::isa::{Isa, for_every_isa};
+use crate::isa::for_every_isa;
 use crate::lanes::{Lanes, MAX_WIDTH};
 
 /// Numbers of input and output that the sums of a block of a depthwise convolution read: they stay in the L2 cache.
@@ -76,29 +76,23 @@ impl TrainingConvolution {
         self.groups > 1 && self.groups == self.channels && self.groups == self.outputs
     }
 
-    fn check(&self, x: &[f32], weights: &[f32], y: &[f32]) {
+    fn check(&self, x: usize, weights: usize, y: usize) {
         let is_divided = self.groups > 0
             && self.channels.is_multiple_of(self.groups)
             && self.outputs.is_multiple_of(self.groups);
         assert!(is_divided, "the groups must divide the channels and the outputs");
-        assert_eq!(x.len(), self.input_length(), "the input must have the stated size");
-        assert_eq!(weights.len(), self.weights_length(), "the weights must have the stated size");
-        assert_eq!(y.len(), self.output_length(), "the output must have the stated size");
+        assert_eq!(x, self.input_length(), "the input must have the stated size");
+        assert_eq!(weights, self.weights_length(), "the weights must have the stated size");
+        assert_eq!(y, self.output_length(), "the output must have the stated size");
     }
 
-    /// Computes the output.
+    /// Returns the output.
     ///
     /// # Panics
     /// When the lengths do not match.
-    pub fn forward(
-        &self,
-        compute: &Compute,
-        x: &[f32],
-        weights: &[f32],
-        bias: Option<&[f32]>,
-        y: &mut [f32],
-    ) {
-        self.check(x, weights, y);
+    pub fn forward(&self, compute: &Compute, x: &[f32], weights: &[f32], bias: Option<&[f32]>) -> Vec<f32> {
+        let length = self.output_length();
+        self.check(x.len(), weights.len(), length);
         let part = Part {
             window: self.window,
             channels: self.channels,
@@ -106,48 +100,77 @@ impl TrainingConvolution {
             x: Strides::channels_last(self.window.input, self.channels),
             y: Strides::channels_last(self.window.output, self.outputs),
         };
-        self.run(compute, &part, x, weights, bias, y);
+        // SAFETY: the convolution writes every number of the output.
+        unsafe {
+            written(length, |y| self.run(compute, &part, x, weights, bias, [y, y.wrapping_add(length)])).0
+        }
     }
 
-    /// Computes a part with weights of its own.
-    fn run(
+    /// Computes a part with weights of its own, to numbers from the first pointer to the second one.
+    ///
+    /// # Safety
+    /// The numbers may be written, and nothing else uses them.
+    unsafe fn run(
         &self,
         compute: &Compute,
         part: &Part,
         x: &[f32],
         weights: &[f32],
         bias: Option<&[f32]>,
-        y: &mut [f32],
+        [y, end]: [*mut f32; 2],
     ) {
+        let length = (end.addr() - y.addr()) / size_of::<f32>();
         let &Part { window, channels, outputs, x: x_strides, y: y_strides } = part;
         let (groups, batch, finish) = (self.groups, self.batch, Finish::default());
         let pixels = batch * window.output[0] * window.output[1];
         let is_whole = x_strides == Strides::channels_last(window.input, channels);
         if self.is_depthwise() {
             let filters = Arc::new(DepthwiseFilters::new(weights, channels, window.kernel, bias));
-            DepthwiseConvolution { filters, window, batch, x: x_strides, y: y_strides, finish }
-                .run(compute, x, y);
+            let conv = DepthwiseConvolution { filters, window, batch, x: x_strides, y: y_strides, finish };
+            // SAFETY: passed on.
+            unsafe { conv.run_to(compute, x, y, length) };
         } else if groups == 1
             && is_whole
             && pixels >= WINOGRAD_PIXELS
             && Winograd::has_kernel(&window, [outputs, channels])
         {
             let filters = Arc::new(WinogradFilters::new(compute, weights, [outputs, channels], bias));
-            Winograd { filters, window, batch, y: y_strides, finish }.run(compute, x, None, y);
+            let conv = Winograd { filters, window, batch, y: y_strides, finish };
+            // SAFETY: passed on.
+            unsafe { conv.run_to(compute, x, None, y, length) };
         } else {
             let sizes = [groups, outputs / groups, channels / groups];
             let filters = Arc::new(Filters::new(compute, weights, sizes, window.kernel, bias, false));
-            Convolution { filters, window, batch, x: x_strides, y: y_strides, residual: y_strides, finish }
-                .run(compute, x, None, y);
+            let conv = Convolution {
+                filters,
+                window,
+                batch,
+                x: x_strides,
+                y: y_strides,
+                residual: y_strides,
+                finish,
+            };
+            // SAFETY: passed on.
+            unsafe { conv.run_to(compute, x, None, y, length) };
         }
     }
 
-    /// Computes the gradient of the input from that of the output.
+    /// Returns the gradient of the input from that of the output.
     ///
     /// # Panics
     /// When the lengths do not match.
-    pub fn input_gradient(&self, compute: &Compute, weights: &[f32], dy: &[f32], dx: &mut [f32]) {
-        self.check(dx, weights, dy);
+    pub fn input_gradient(&self, compute: &Compute, weights: &[f32], dy: &[f32]) -> Vec<f32> {
+        let length = self.input_length();
+        self.check(length, weights.len(), dy.len());
+        // SAFETY: the phases write every number of the gradient, or it is filled with zeros.
+        unsafe { written(length, |dx| self.phases(compute, weights, dy, [dx, dx.wrapping_add(length)])).0 }
+    }
+
+    /// Computes the phases of the input's gradient, to numbers from the first pointer to the second one.
+    ///
+    /// # Safety
+    /// The numbers may be written, and nothing else uses them.
+    unsafe fn phases(&self, compute: &Compute, weights: &[f32], dy: &[f32], [dx, end]: [*mut f32; 2]) {
         let Window { kernel, strides, dilations, pads, input, output } = self.window;
         let axis =
             |axis: usize| phases(kernel[axis], strides[axis], dilations[axis], pads[axis], input[axis]);
@@ -156,7 +179,8 @@ impl TrainingConvolution {
             (Strides::channels_last(input, self.channels), Strides::channels_last(output, self.outputs));
         let all_phases = || rows.iter().flat_map(|row| columns.iter().map(move |column| [row, column]));
         if all_phases().any(|phases| phases.iter().any(|phase| phase.taps.is_empty())) {
-            dx.fill(0.0);
+            // SAFETY: passed on.
+            unsafe { dx.write_bytes(0, self.input_length()) };
         }
         for (row_index, row) in rows.iter().enumerate() {
             for (column_index, column) in columns.iter().enumerate() {
@@ -178,14 +202,9 @@ impl TrainingConvolution {
                 let weights = self.transposed(compute, weights, &row.taps, &column.taps);
                 let from = begin[0] * whole_y.row + begin[1] * whole_y.pixel;
                 let to = row_index * whole_x.row + column_index * whole_x.pixel;
-                self.run(
-                    compute,
-                    &part,
-                    dy.get(from..).unwrap_or_default(),
-                    &weights,
-                    None,
-                    dx.get_mut(to..).unwrap_or_default(),
-                );
+                let dy = dy.get(from..).unwrap_or_default();
+                // SAFETY: the phase begins within the gradient, and its convolution checks where it ends.
+                unsafe { self.run(compute, &part, dy, &weights, None, [dx.wrapping_add(to).min(end), end]) };
             }
         }
     }
@@ -213,7 +232,7 @@ impl TrainingConvolution {
     /// # Panics
     /// When the lengths do not match.
     pub fn weight_gradient(&self, compute: &Compute, x: &[f32], dy: &[f32], dw: &mut [f32]) {
-        self.check(x, dw, dy);
+        self.check(x.len(), dw.len(), dy.len());
         if dw.is_empty() || dy.is_empty() || x.is_empty() {
             dw.fill(0.0);
             return;
@@ -234,7 +253,7 @@ impl TrainingConvolution {
         let at_once = blocks.div_ceil(2 * compute.pool().threads()).min(4);
         with_buffer(&SUMS, taps * padded, |all| {
             all.fill(0.0);
-            let to = Written(all.as_mut_ptr());
+            let to = Output(all.as_mut_ptr());
             compute.pool().run(blocks.div_ceil(at_once), |piece| {
                 let first = piece * at_once * MAX_WIDTH;
                 let range = first..((piece + 1) * at_once * MAX_WIDTH).min(padded);
@@ -245,21 +264,6 @@ impl TrainingConvolution {
                 dw.iter_mut().enumerate().for_each(|(tap, dw)| *dw = all[tap * padded + channel]);
             }
         });
-    }
-}
-
-/// A pointer to what pieces write disjoint parts of.
-struct Written(*mut f32);
-
-// SAFETY: pieces write disjoint parts.
-unsafe impl Sync for Written {}
-
-impl Written {
-    /// # Safety
-    /// The index lies within the memory.
-    unsafe fn at(&self, index: usize) -> *mut f32 {
-        // SAFETY: passed on.
-        unsafe { self.0.add(index) }
     }
 }
 
@@ -398,6 +402,7 @@ unsafe fn channel_sums<V: Lanes, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::isa::Isa;
 
     /// Distance between a number and its f64 reference, relative to the largest one.
     const TOLERANCE: f64 = 2e-5;
@@ -490,11 +495,11 @@ mod tests {
                 for threads in [1, 3] {
                     let pool = Arc::new(crate::pool::WorkerPool::new(threads));
                     let compute = Compute::new(isa, pool);
-                    let mut results = [vec![9.0; dy.len()], vec![9.0; x.len()], vec![9.0; weights.len()]];
-                    let [y, dx, dw] = &mut results;
-                    conv.forward(&compute, &x, &weights, Some(&bias), y);
-                    conv.input_gradient(&compute, &weights, &dy, dx);
-                    conv.weight_gradient(&compute, &x, &dy, dw);
+                    let mut dw = vec![9.0; weights.len()];
+                    conv.weight_gradient(&compute, &x, &dy, &mut dw);
+                    let y = conv.forward(&compute, &x, &weights, Some(&bias));
+                    let results = [y, conv.input_gradient(&compute, &weights, &dy), dw];
+                    let [y, dx, dw] = &results;
                     assert_near(y, &y_wanted, &format!("output of {conv:?}, {isa}"));
                     assert_near(dx, &dx_wanted, &format!("gradient of the input of {conv:?}, {isa}"));
                     assert_near(dw, &dw_wanted, &format!("gradient of the weights of {conv:?}, {isa}"));

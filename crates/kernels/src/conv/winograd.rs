@@ -185,6 +185,22 @@ impl Winograd {
     /// # Panics
     /// When the slices are shorter than the shapes and strides require.
     pub fn run(&self, compute: &Compute, x: &[f32], residual: Option<&[f32]>, y: &mut [f32]) {
+        // SAFETY: the output has that length.
+        unsafe { self.run_to(compute, x, residual, y.as_mut_ptr(), y.len()) }
+    }
+
+    /// Computes the convolution to `length` numbers, none of which is read before it is written.
+    ///
+    /// # Safety
+    /// The numbers may be written, and nothing else uses them.
+    pub(super) unsafe fn run_to(
+        &self,
+        compute: &Compute,
+        x: &[f32],
+        residual: Option<&[f32]>,
+        y: *mut f32,
+        length: usize,
+    ) {
         let (filters, window) = (&*self.filters, &self.window);
         let [height, width] = window.output;
         if self.batch == 0 || height * width * filters.outputs == 0 {
@@ -195,7 +211,7 @@ impl Winograd {
         assert!(x.len() >= input, "the input is too short");
         self.y.check_written(window.output, filters.outputs);
         let last = (self.batch - 1) * self.y.image + (height - 1) * self.y.row + (width - 1) * self.y.pixel;
-        assert!(y.len() >= last + filters.outputs, "the output is too short");
+        assert!(length >= last + filters.outputs, "the output is too short");
         let is_long = residual.is_none_or(|residual| residual.len() >= pixels * filters.outputs);
         assert!(is_long, "the residual is too short");
         if let Some(slopes) = &self.finish.slopes {
@@ -210,7 +226,7 @@ impl Winograd {
         let job = Job {
             conv: self,
             x: x.as_ptr(),
-            y: y.as_mut_ptr(),
+            y,
             residual: residual.map_or(std::ptr::null(), <[f32]>::as_ptr),
             tiles: [down, across],
         };
@@ -244,7 +260,8 @@ impl Winograd {
                             residual: y,
                             finish: Finish::default(),
                         };
-                        piece::run(&product, None, patches, None, sums);
+                        // SAFETY: the buffers have the sizes of the product.
+                        unsafe { piece::run(&product, None, patches, None, sums.as_mut_ptr()) };
                     }
                     // SAFETY: as above; pieces write disjoint tiles.
                     unsafe { dispatch_outputs(isa, &job, range, sums.as_ptr()) };

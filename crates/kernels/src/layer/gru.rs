@@ -262,6 +262,11 @@ impl Gru {
 }
 
 impl GruTape {
+    /// Returns the states after every step of the last forward pass, `[steps, batch, size]`.
+    pub fn states(&self) -> &[f32] {
+        &self.states
+    }
+
     fn prepare(&mut self, gru: &Gru, steps: usize, batch: usize, x: &[f32]) {
         (self.steps, self.batch) = (steps, batch);
         let samples = steps * batch;

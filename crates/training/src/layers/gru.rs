@@ -6,6 +6,7 @@ use burn::tensor::activation::{sigmoid, tanh};
 use burn::tensor::{Device, Tensor};
 
 use crate::export::record_gru;
+use crate::operations::gru;
 
 /// Configuration of a [`Gru`].
 #[derive(Config, Debug)]
@@ -60,6 +61,9 @@ impl Gru {
         let (weight, recurrence) = (self.weight_ih_l0.val(), self.weight_hh_l0.val());
         let (bias, recurrence_bias) = (self.bias_ih_l0.val(), self.bias_hh_l0.val());
         if let Some(states) = record_gru(&input, [&weight, &recurrence], [&bias, &recurrence_bias]) {
+            return states;
+        }
+        if let Some(states) = gru(&input, [&weight, &recurrence], [&bias, &recurrence_bias]) {
             return states;
         }
         let [batch, time, features] = input.dims();

@@ -6,6 +6,7 @@ use burn::tensor::{Device, Tensor};
 
 use super::activation::Activation;
 use super::conv_norm_act::{ConvNormAct, ConvNormActConfig};
+use crate::operations::add_act;
 
 /// Configuration of an [`InvertedResidual`].
 #[derive(Config, Debug)]
@@ -67,6 +68,6 @@ impl InvertedResidual {
             None => x.clone(),
         };
         let result = self.project.forward(self.depthwise.forward(wide));
-        if self.residual { x + result } else { result }
+        if self.residual { add_act(x, result, Activation::Identity) } else { result }
     }
 }

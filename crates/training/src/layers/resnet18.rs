@@ -9,7 +9,7 @@ use burn::tensor::module::adaptive_avg_pool2d;
 use burn::tensor::{Device, Tensor};
 
 use super::activation::Activation;
-use crate::operations::{batch_norm, batch_norm_act, conv2d};
+use crate::operations::{add_act, batch_norm, batch_norm_act, conv2d};
 
 /// Configuration of a [`ResNet18`].
 #[derive(Config, Debug)]
@@ -97,7 +97,7 @@ impl BasicBlock {
             Some((conv, norm)) => batch_norm(norm, conv2d(conv, x)),
             None => x,
         };
-        Activation::Relu.apply(result + shortcut)
+        add_act(result, shortcut, Activation::Relu)
     }
 }
 

@@ -43,8 +43,8 @@ fn train<const D: usize>(layer: &BatchNorm, x: &Tensor<D>, activation: Unary) ->
     let pixels = channels_last(own.primitive());
     let (of_gamma, of_beta) = (gamma.primitive().to_contiguous(), beta.primitive().to_contiguous());
     let norm = BatchNormalization { gamma: numbers(&of_gamma), beta: numbers(&of_beta), epsilon, activation };
-    let mut y = vec![0.0; numbers(&pixels).len()];
-    let statistics = Arc::new(norm.forward(compute(), numbers(&pixels), &mut y));
+    let (y, statistics) = norm.forward(compute(), numbers(&pixels));
+    let statistics = Arc::new(statistics);
     let y = from_channels_last(y, &shape(own.primitive()));
     let nodes = [own.node(), gamma.node(), beta.node()];
     let y = match Normalized.prepare::<NoCheckpointing>(nodes).compute_bound().stateful() {

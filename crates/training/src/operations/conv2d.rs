@@ -65,8 +65,7 @@ fn sizes(layer: &Conv2d, x: &Tensor<4>) -> Option<TrainingConvolution> {
 fn forward(sizes: &TrainingConvolution, x: &Cpu, weight: &Cpu, bias: Option<&Cpu>) -> Cpu {
     let (x, weight) = (channels_last(x), weight.to_contiguous());
     let bias = bias.map(Cpu::to_contiguous);
-    let mut y = vec![0.0; sizes.output_length()];
-    sizes.forward(compute(), numbers(&x), numbers(&weight), bias.as_ref().map(numbers), &mut y);
+    let y = sizes.forward(compute(), numbers(&x), numbers(&weight), bias.as_ref().map(numbers));
     let [height, width] = sizes.window.output;
     from_channels_last(y, &[sizes.batch, sizes.outputs, height, width])
 }
@@ -80,8 +79,7 @@ fn gradients(
 ) -> [Option<Cpu>; 2] {
     let dy = channels_last(dy);
     let dx = of_x.then(|| {
-        let mut dx = vec![0.0; sizes.input_length()];
-        sizes.input_gradient(compute(), numbers(&weight.to_contiguous()), numbers(&dy), &mut dx);
+        let dx = sizes.input_gradient(compute(), numbers(&weight.to_contiguous()), numbers(&dy));
         from_channels_last(dx, &shape(x))
     });
     let dw = of_weight.then(|| {

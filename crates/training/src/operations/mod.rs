@@ -4,8 +4,10 @@
 //! copies images that lie otherwise. Gradients are registered with Burn, so that networks mix both kinds of operations.
 
 mod activate;
+mod add;
 mod batch_norm;
 mod conv2d;
+mod gru;
 
 use std::sync::OnceLock;
 
@@ -15,8 +17,10 @@ use burn::tensor::TensorData;
 use opendr_kernels::Compute;
 
 pub(crate) use activate::activate;
+pub use add::add_act;
 pub use batch_norm::{batch_norm, batch_norm_act};
 pub use conv2d::conv2d;
+pub(crate) use gru::gru;
 
 /// A tensor on the CPU.
 type Cpu = FloatTensor<Flex>;
