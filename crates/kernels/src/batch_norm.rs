@@ -73,10 +73,20 @@ impl BatchNormalization<'_> {
             return (Vec::new(), BatchStatistics { mean: zeros.clone(), variance: zeros });
         }
         let statistics = statistics(compute, x, channels);
-        let affine = self.affine(&statistics);
-        let at_once = pixels_of_chunk(channels) * channels;
+        (self.inference(compute, x, &statistics), statistics)
+    }
+
+    /// Returns the output of pixels with statistics that are given.
+    ///
+    /// # Panics
+    /// When the lengths do not match.
+    pub fn inference(&self, compute: &Compute, x: &[f32], statistics: &BatchStatistics) -> Vec<f32> {
+        self.check(x, x);
+        self.check_statistics(statistics);
+        let affine = self.affine(statistics);
+        let at_once = pixels_of_chunk(self.channels()) * self.channels().max(1);
         // SAFETY: the chunks write every number of the output.
-        let (y, ()) = unsafe {
+        unsafe {
             written(x.len(), |y| {
                 let y = Output(y);
                 compute.pool().run(x.len().div_ceil(at_once), |chunk| {
@@ -84,8 +94,14 @@ impl BatchNormalization<'_> {
                     dispatch_normalize(compute.isa(), x, y.at(chunk * at_once), &affine, self);
                 });
             })
-        };
-        (y, statistics)
+            .0
+        }
+    }
+
+    fn check_statistics(&self, statistics: &BatchStatistics) {
+        let is_whole =
+            statistics.mean.len() == self.channels() && statistics.variance.len() == self.channels();
+        assert!(is_whole, "one mean and variance per channel");
     }
 
     /// Replaces the gradient of the output by that of the input, and returns those of `gamma` and `beta`.
@@ -101,8 +117,7 @@ impl BatchNormalization<'_> {
     ) -> [Vec<f32>; 2] {
         self.check(x, dy);
         let channels = self.channels();
-        let is_whole = statistics.mean.len() == channels && statistics.variance.len() == channels;
-        assert!(is_whole, "one mean and variance per channel");
+        self.check_statistics(statistics);
         if x.is_empty() {
             return [vec![0.0; channels], vec![0.0; channels]];
         }

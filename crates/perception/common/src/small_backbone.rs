@@ -4,8 +4,9 @@
 use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, PaddingConfig2d};
-use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
+use opendr_training::layers::Activation;
+use opendr_training::operations::{batch_norm_act, conv2d};
 
 /// A small convolutional backbone.
 #[derive(Module, Debug)]
@@ -63,6 +64,6 @@ impl Block {
     }
 
     fn forward(&self, features: Tensor<4>) -> Tensor<4> {
-        relu(self.norm.forward(self.conv.forward(features)))
+        batch_norm_act(&self.norm, Activation::Relu, conv2d(&self.conv, features))
     }
 }

@@ -5,12 +5,12 @@ use burn::backend::autodiff::checkpoint::base::Checkpointer;
 use burn::backend::autodiff::checkpoint::strategy::NoCheckpointing;
 use burn::backend::autodiff::grads::Gradients;
 use burn::backend::autodiff::ops::{Backward, Ops, OpsKind};
-use burn::tensor::{DType, Tensor};
+use burn::tensor::Tensor;
 use opendr_kernels::Unary;
 
 use super::{
-    Cpu, Trained, channels_last, channels_last_of, channels_second, compute, contiguous, from_channels_last,
-    numbers, shape, tensor,
+    Cpu, Own, Trained, channels_last, channels_last_of, channels_second, compute, contiguous,
+    from_channels_last, numbers, shape, tensor,
 };
 use crate::layers::Activation;
 
@@ -29,18 +29,29 @@ pub(super) fn kernel_of(activation: Activation) -> Option<Unary> {
     })
 }
 
-/// Returns the activation of a tensor that is trained on the CPU; `None` for others.
+/// Returns `max(x, 0)`.
+pub fn relu<const D: usize>(x: Tensor<D>) -> Tensor<D> {
+    Activation::Relu.apply(x)
+}
+
+/// Returns `min(max(x, 0), 6)`.
+pub fn relu6<const D: usize>(x: Tensor<D>) -> Tensor<D> {
+    Activation::Relu6.apply(x)
+}
+
+/// Returns the activation of a tensor on the CPU; `None` for others.
 pub(crate) fn activate<const D: usize>(activation: Activation, x: &Tensor<D>) -> Option<Tensor<D>> {
-    let kernel = kernel_of(activation).filter(|_| x.dtype() == DType::F32)?;
-    let own = x.clone().try_into_primitive::<Trained>().ok()?;
+    let kernel = kernel_of(activation)?;
+    let own = Own::of(x)?;
     let from = in_order(own.primitive());
     let mut y = vec![0.0; numbers(&from).len()];
     kernel.apply(compute(), numbers(&from), &mut y);
     let y = as_ordered(own.primitive(), y);
+    let Own::Trained(x) = own else { return Some(Tensor::from_primitive::<Flex>(y)) };
     // The gradient depends on whether the input lies above a kink, as the output does, which the next layer keeps anyway.
     let has_kinks = matches!(kernel, Unary::Relu | Unary::Clip { .. } | Unary::LeakyRelu { .. });
-    let kept = if has_kinks { y.clone() } else { own.primitive().clone() };
-    let y = match Activated.prepare::<NoCheckpointing>([own.node()]).compute_bound().stateful() {
+    let kept = if has_kinks { y.clone() } else { x.primitive().clone() };
+    let y = match Activated.prepare::<NoCheckpointing>([x.node()]).compute_bound().stateful() {
         OpsKind::Tracked(prepared) => prepared.finish((kept, kernel), y),
         OpsKind::UnTracked(prepared) => prepared.finish(y),
     };

@@ -5,32 +5,38 @@ use burn::backend::autodiff::checkpoint::base::Checkpointer;
 use burn::backend::autodiff::checkpoint::strategy::NoCheckpointing;
 use burn::backend::autodiff::grads::Gradients;
 use burn::backend::autodiff::ops::{Backward, Ops, OpsKind};
-use burn::tensor::{DType, Tensor};
+use burn::tensor::Tensor;
 use opendr_kernels::{Unary, add_activated};
 
 use super::activate::kernel_of;
 use super::{
-    Cpu, Trained, channels_last, channels_last_of, channels_second, compute, from_channels_last, numbers,
-    shape,
+    Cpu, Own, Trained, channels_last, channels_last_of, channels_second, compute, from_channels_last,
+    numbers, shape,
 };
 use crate::layers::Activation;
 
-/// Returns the activation of the sum of two tensors of images, of equal shapes.
-pub fn add_act(left: Tensor<4>, right: Tensor<4>, activation: Activation) -> Tensor<4> {
+/// Returns the activation of the sum of two tensors `[batch, channels, ...]`.
+pub fn add_act<const D: usize>(left: Tensor<D>, right: Tensor<D>, activation: Activation) -> Tensor<D> {
     own(&left, &right, activation).unwrap_or_else(|| activation.apply(left + right))
 }
 
-/// Returns the sum where both tensors are trained on the CPU, and the gradient follows from the output.
-fn own(left: &Tensor<4>, right: &Tensor<4>, activation: Activation) -> Option<Tensor<4>> {
+/// Returns the sum where both tensors lie on the CPU, and the gradient follows from the output.
+fn own<const D: usize>(left: &Tensor<D>, right: &Tensor<D>, activation: Activation) -> Option<Tensor<D>> {
     let kernel = kernel_of(activation).filter(|kernel| {
         matches!(kernel, Unary::Identity | Unary::Relu | Unary::Clip { .. } | Unary::LeakyRelu { .. })
     })?;
-    let is_plain = left.dtype() == DType::F32 && right.dtype() == DType::F32 && left.dims() == right.dims();
-    let left = left.clone().try_into_primitive::<Trained>().ok().filter(|_| is_plain)?;
-    let right = right.clone().try_into_primitive::<Trained>().ok()?;
+    if left.dims() != right.dims() {
+        return None;
+    }
+    let (left, right) = (Own::of(left)?, Own::of(right)?);
     let (a, b) = (channels_last(left.primitive()), channels_last(right.primitive()));
     let y = add_activated(compute(), numbers(&a), numbers(&b), kernel);
     let y = from_channels_last(y, &shape(left.primitive()));
+    let (left, right) = match (left, right) {
+        (Own::Trained(left), Own::Trained(right)) => (left, right),
+        (Own::Plain(_), Own::Plain(_)) => return Some(Tensor::from_primitive::<Flex>(y)),
+        _ => return None,
+    };
     let y = match Added.prepare::<NoCheckpointing>([left.node(), right.node()]).compute_bound().stateful() {
         OpsKind::Tracked(prepared) => prepared.finish((y.clone(), kernel), y),
         OpsKind::UnTracked(prepared) => prepared.finish(y),

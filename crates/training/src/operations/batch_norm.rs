@@ -9,13 +9,13 @@ use burn::backend::autodiff::checkpoint::strategy::NoCheckpointing;
 use burn::backend::autodiff::grads::Gradients;
 use burn::backend::autodiff::ops::{Backward, Ops, OpsKind};
 use burn::nn::BatchNorm;
-use burn::tensor::{DType, Tensor, TensorData};
+use burn::tensor::{Tensor, TensorData};
 use opendr_kernels::{BatchNormalization, BatchStatistics, Unary};
 
 use super::activate::kernel_of;
 use super::{
-    Cpu, Trained, channels_last, channels_last_of, channels_second, compute, from_channels_last, numbers,
-    shape, tensor,
+    Cpu, CpuTrained, Own, Trained, channels_last, channels_last_of, channels_second, compute,
+    from_channels_last, numbers, shape, tensor,
 };
 use crate::layers::Activation;
 
@@ -26,17 +26,35 @@ pub fn batch_norm<const D: usize>(layer: &BatchNorm, x: Tensor<D>) -> Tensor<D> 
 
 /// Returns the activation of the normalisation of `[batch, channels, ...]`.
 pub fn batch_norm_act<const D: usize>(layer: &BatchNorm, activation: Activation, x: Tensor<D>) -> Tensor<D> {
-    let own = kernel_of(activation).and_then(|kernel| train(layer, &x, kernel));
+    let own = kernel_of(activation).and_then(|kernel| match Own::of(&x)? {
+        Own::Trained(own) if layer.training.is_enabled() => train(layer, &x, &own, kernel),
+        Own::Trained(_) => None,
+        Own::Plain(own) => infer(layer, &own, kernel),
+    });
     own.unwrap_or_else(|| activation.apply(layer.forward(x)))
 }
 
-/// Normalises by the statistics of the batch, and updates the running ones, where the tensor is trained on the CPU.
-fn train<const D: usize>(layer: &BatchNorm, x: &Tensor<D>, activation: Unary) -> Option<Tensor<D>> {
-    if !layer.training.is_enabled() || x.dtype() != DType::F32 {
-        return None;
-    }
+/// Normalises by the running statistics.
+fn infer<const D: usize>(layer: &BatchNorm, x: &Cpu, activation: Unary) -> Option<Tensor<D>> {
+    let vector = |tensor: Tensor<1>| tensor.try_into_primitive::<Flex>().ok().map(|own| own.to_contiguous());
+    let (gamma, beta) = (vector(layer.gamma.val())?, vector(layer.beta.val())?);
+    let [mean, variance] = [&layer.running_mean, &layer.running_var]
+        .map(|running| vector(running.value()).map(|own| numbers(&own).to_vec()));
+    let statistics = BatchStatistics { mean: mean?, variance: variance? };
+    let epsilon = layer.epsilon as f32;
+    let norm = BatchNormalization { gamma: numbers(&gamma), beta: numbers(&beta), epsilon, activation };
+    let y = norm.inference(compute(), numbers(&channels_last(x)), &statistics);
+    Some(Tensor::from_primitive::<Flex>(from_channels_last(y, &shape(x))))
+}
+
+/// Normalises by the statistics of the batch, and updates the running ones.
+fn train<const D: usize>(
+    layer: &BatchNorm,
+    x: &Tensor<D>,
+    own: &CpuTrained,
+    activation: Unary,
+) -> Option<Tensor<D>> {
     let device = x.device();
-    let own = x.clone().try_into_primitive::<Trained>().ok()?;
     let gamma = layer.gamma.val().try_into_primitive::<Trained>().ok()?;
     let beta = layer.beta.val().try_into_primitive::<Trained>().ok()?;
     let epsilon = layer.epsilon as f32;
@@ -49,7 +67,7 @@ fn train<const D: usize>(layer: &BatchNorm, x: &Tensor<D>, activation: Unary) ->
     let nodes = [own.node(), gamma.node(), beta.node()];
     let y = match Normalized.prepare::<NoCheckpointing>(nodes).compute_bound().stateful() {
         OpsKind::Tracked(mut prepared) => {
-            let inputs = [&own, &gamma, &beta].map(|tensor| prepared.checkpoint(tensor));
+            let inputs = [own, &gamma, &beta].map(|tensor| prepared.checkpoint(tensor));
             prepared.finish(State { inputs, statistics: Arc::clone(&statistics), epsilon, activation }, y)
         }
         OpsKind::UnTracked(prepared) => prepared.finish(y),

@@ -6,20 +6,21 @@
 mod activate;
 mod add;
 mod batch_norm;
-mod conv2d;
+mod convolution;
 mod gru;
 
 use std::sync::OnceLock;
 
 use burn::backend::tensor::FloatTensor;
 use burn::backend::{Autodiff, Flex};
-use burn::tensor::TensorData;
+use burn::tensor::{DType, Tensor, TensorData};
 use opendr_kernels::Compute;
 
 pub(crate) use activate::activate;
+pub use activate::{relu, relu6};
 pub use add::add_act;
 pub use batch_norm::{batch_norm, batch_norm_act};
-pub use conv2d::conv2d;
+pub use convolution::{conv1d, conv2d};
 pub(crate) use gru::gru;
 
 /// A tensor on the CPU.
@@ -28,6 +29,34 @@ type Cpu = FloatTensor<Flex>;
 type Trained = Autodiff<Flex>;
 /// A tensor on the CPU with gradients.
 type CpuTrained = FloatTensor<Trained>;
+
+/// A tensor that the kernels compute with.
+enum Own {
+    /// With gradients.
+    Trained(CpuTrained),
+    /// Without.
+    Plain(Cpu),
+}
+
+impl Own {
+    /// Returns a tensor of 32-bit floats on the CPU; `None` for others.
+    fn of<const D: usize>(tensor: &Tensor<D>) -> Option<Self> {
+        if tensor.dtype() != DType::F32 {
+            return None;
+        }
+        match tensor.clone().try_into_primitive::<Trained>() {
+            Ok(tensor) => Some(Self::Trained(tensor)),
+            Err(_) => tensor.clone().try_into_primitive::<Flex>().ok().map(Self::Plain),
+        }
+    }
+
+    fn primitive(&self) -> &Cpu {
+        match self {
+            Self::Trained(tensor) => tensor.primitive(),
+            Self::Plain(tensor) => tensor,
+        }
+    }
+}
 
 /// Returns the threads of all trainings of the process: `OPENDR_THREADS`, or as many as the machine has.
 fn compute() -> &'static Compute {

@@ -6,6 +6,7 @@ mod architectures;
 mod convolution;
 mod export;
 mod fit;
+mod operations;
 mod small;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};

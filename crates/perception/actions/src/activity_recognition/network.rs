@@ -5,8 +5,10 @@ use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{
     BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Initializer, Linear, LinearConfig, PaddingConfig2d,
 };
-use burn::tensor::activation::{relu, sigmoid, silu};
+use burn::tensor::activation::sigmoid;
 use burn::tensor::{Device, Tensor};
+use opendr_training::layers::Activation;
+use opendr_training::operations::{add_act, batch_norm, batch_norm_act, conv2d, relu};
 
 use super::Sizes;
 use super::time::Time;
@@ -96,10 +98,10 @@ impl ActivityNetwork {
 
     /// Returns logits `[batch, classes]`.
     pub fn forward(&self, frames: Tensor<4>, time: &mut Time) -> Tensor<2> {
-        let signal = self.stem_time.forward(self.stem.forward(frames), time);
-        let signal = relu(self.stem_norm.forward(signal));
+        let signal = self.stem_time.forward(conv2d(&self.stem, frames), time);
+        let signal = batch_norm_act(&self.stem_norm, Activation::Relu, signal);
         let signal = self.blocks.iter().fold(signal, |signal, block| block.forward(signal, time));
-        let signal = relu(self.last_norm.forward(self.last.forward(signal)));
+        let signal = batch_norm_act(&self.last_norm, Activation::Relu, conv2d(&self.last, signal));
         let pooled = time.mean(mean_of_frames(signal));
         let hidden = relu(self.hidden.forward(pooled));
         self.classifier.forward(self.dropout.forward(hidden))
@@ -126,16 +128,17 @@ impl Block {
 
     fn forward(&self, signal: Tensor<4>, time: &mut Time) -> Tensor<4> {
         let past = match (&self.past, &self.past_norm) {
-            (Some(past), Some(norm)) => norm.forward(past.forward(signal.clone())),
+            (Some(past), Some(norm)) => batch_norm(norm, conv2d(past, signal.clone())),
             _ => signal.clone(),
         };
-        let inner = relu(self.expand_norm.forward(self.expand.forward(signal)));
-        let inner = self.depthwise_norm.forward(self.depthwise.forward(inner, time));
+        let inner = batch_norm_act(&self.expand_norm, Activation::Relu, conv2d(&self.expand, signal));
+        let inner = batch_norm(&self.depthwise_norm, self.depthwise.forward(inner, time));
         let inner = match &self.excitation {
             Some(excitation) => excitation.forward(inner),
             None => inner,
         };
-        relu(past + self.project_norm.forward(self.project.forward(silu(inner))))
+        let result = batch_norm(&self.project_norm, conv2d(&self.project, Activation::Silu.apply(inner)));
+        add_act(past, result, Activation::Relu)
     }
 }
 
@@ -146,8 +149,8 @@ impl CausalDepthwise {
     }
 
     fn forward(&self, signal: Tensor<4>, time: &mut Time) -> Tensor<4> {
-        let earlier = self.earlier.iter().map(|tap| tap.forward(signal.clone())).collect();
-        time.sum(self.now.forward(signal), earlier)
+        let earlier = self.earlier.iter().map(|tap| conv2d(tap, signal.clone())).collect();
+        time.sum(conv2d(&self.now, signal), earlier)
     }
 }
 

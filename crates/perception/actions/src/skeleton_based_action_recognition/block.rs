@@ -3,8 +3,9 @@
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Initializer};
-use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor, TensorData};
+use opendr_training::layers::Activation;
+use opendr_training::operations::{add_act, batch_norm, conv2d, relu};
 
 use super::edges::Edges;
 use super::joint_attention::JointAttention;
@@ -97,7 +98,7 @@ impl Block {
         let [batch, channels, frames, joints] = signal.dims();
         // Without padding, the output belongs to the frame in the middle of the kernel.
         let past = signal.slice([0..batch, 0..channels, reach..frames - reach, 0..joints]);
-        self.join(temporal.forward(mixed), past)
+        self.join(conv2d(temporal, mixed), past)
     }
 
     /// Returns the output `[1, channels, 1, joints]` for the frame half a kernel ago.
@@ -113,7 +114,7 @@ impl Block {
             }
             false => signal,
         };
-        self.join(temporal.forward(window), past)
+        self.join(conv2d(temporal, window), past)
     }
 
     /// Mixes the features of the joints of each frame: each joint receives features along the edges, which a 1x1 convolution
@@ -125,7 +126,7 @@ impl Block {
             (None, Some(edges)) => received(signal.clone(), edges),
             (None, None) => signal.clone(),
         };
-        let mixed = self.mixing_norm.forward(self.mixing.forward(received));
+        let mixed = batch_norm(&self.mixing_norm, conv2d(&self.mixing, received));
         relu(self.shortcut.added_to(mixed, signal))
     }
 
@@ -147,7 +148,7 @@ impl Block {
 
     fn join(&self, moved: Tensor<4>, past: Tensor<4>) -> Tensor<4> {
         let moved = match &self.temporal_norm {
-            Some(norm) => norm.forward(moved),
+            Some(norm) => batch_norm(norm, moved),
             None => moved,
         };
         relu(self.past.added_to(self.dropout.forward(moved), past))
@@ -169,8 +170,10 @@ impl Past {
     fn added_to(&self, signal: Tensor<4>, input: Tensor<4>) -> Tensor<4> {
         match (&self.convolution, &self.norm) {
             _ if !self.is_there => signal,
-            (Some(convolution), Some(norm)) => signal + norm.forward(convolution.forward(input)),
-            _ => signal + input,
+            (Some(convolution), Some(norm)) => {
+                add_act(signal, batch_norm(norm, conv2d(convolution, input)), Activation::Identity)
+            }
+            _ => add_act(signal, input, Activation::Identity),
         }
     }
 }

@@ -4,6 +4,7 @@ use burn::module::Module;
 use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, LinearConfig};
 use burn::tensor::activation::softmax;
 use burn::tensor::{Device, Tensor};
+use opendr_training::operations::batch_norm;
 
 use super::sizes::{CHANNELS_PER_QUERY, HEADS};
 
@@ -67,7 +68,7 @@ impl JointAttention {
         let mut rows: Tensor<3> = signal.permute([0, 2, 3, 1]).reshape([count, joints, channels]);
         if let Some(norm) = &self.norm {
             let flat: Tensor<2> = rows.reshape([count, joints * channels]);
-            rows = norm.forward(flat).reshape([count, joints, channels]);
+            rows = batch_norm(norm, flat).reshape([count, joints, channels]);
         }
         let query = self.split(self.query.forward(rows.clone()));
         let key = self.split(self.key.forward(rows.clone()));

@@ -4,6 +4,7 @@ use burn::module::Module;
 use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, LinearConfig};
 use burn::tensor::{Device, Tensor};
 use opendr_engine::Result;
+use opendr_training::operations::batch_norm;
 
 use super::block::Block;
 use super::frame_selection::FrameSelection;
@@ -53,7 +54,7 @@ impl ActionNetwork {
 
     /// Returns logits `[batch, classes]` of clips `[batch, features, frames, joints]`.
     pub fn forward(&self, clips: Tensor<4>) -> Tensor<2> {
-        let mut signal = self.scale.forward(clips);
+        let mut signal = batch_norm(&self.scale, clips);
         for (index, block) in self.blocks.iter().enumerate() {
             match &self.selection {
                 Some(selection) if index == BLOCKS_BEFORE_SELECTION => signal = selection.forward(signal),
@@ -71,7 +72,7 @@ impl ActionNetwork {
     /// is `[1, NetworkSizes::state]`. The network must select no frames.
     pub fn step(&self, frame: Tensor<4>, state: Tensor<2>) -> (Tensor<2>, Tensor<2>) {
         let mut state = StreamState::new(state);
-        let signal = self.scale.forward(frame);
+        let signal = batch_norm(&self.scale, frame);
         let signal = self.blocks.iter().fold(signal, |signal, block| block.step(signal, &mut state));
         let [_, channels, _, _] = signal.dims();
         let before = state.rest() / channels;

@@ -3,8 +3,9 @@
 use burn::module::Module;
 use burn::nn::conv::{Conv1d, Conv1dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, PaddingConfig1d};
-use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
+use opendr_training::layers::Activation;
+use opendr_training::operations::{batch_norm_act, conv1d};
 
 /// Maximum number of remaining steps.
 const MOST_STEPS: usize = 64;
@@ -53,6 +54,6 @@ impl Halving {
     }
 
     fn forward(&self, signal: Tensor<3>) -> Tensor<3> {
-        relu(self.norm.forward(self.convolution.forward(signal)))
+        batch_norm_act(&self.norm, Activation::Relu, conv1d(&self.convolution, signal))
     }
 }

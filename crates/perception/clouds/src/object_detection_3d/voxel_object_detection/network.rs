@@ -3,12 +3,12 @@
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{Initializer, Linear, LinearConfig};
-use burn::tensor::activation::relu;
 use burn::tensor::module::interpolate;
 use burn::tensor::ops::{InterpolateMode, InterpolateOptions};
 use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
 use opendr_engine::{Error, Result};
 use opendr_training::layers::{ConvNormAct, ConvNormActConfig};
+use opendr_training::operations::{conv2d, relu};
 
 use super::coding::NUMBERS;
 use crate::pillars::{PillarPoint, Voxeliser};
@@ -124,9 +124,9 @@ impl PillarNetwork {
         }
         let x = self.smooth.forward(sum.unwrap_or(x));
         PillarOutput {
-            scores: self.scores.forward(x.clone()),
-            offsets: self.offsets.forward(x.clone()),
-            backs: self.backs.forward(x),
+            scores: conv2d(&self.scores, x.clone()),
+            offsets: conv2d(&self.offsets, x.clone()),
+            backs: conv2d(&self.backs, x),
         }
     }
 }

@@ -6,10 +6,12 @@
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{Initializer, PaddingConfig2d};
-use burn::tensor::activation::{leaky_relu, sigmoid};
+use burn::tensor::activation::sigmoid;
 use burn::tensor::module::{avg_pool2d, interpolate, max_pool2d};
 use burn::tensor::ops::{AvgPoolOptions, InterpolateMode, InterpolateOptions, MaxPoolOptions};
 use burn::tensor::{Device, Tensor};
+use opendr_training::layers::Activation;
+use opendr_training::operations::conv2d;
 
 use super::{BINS, STRIDES};
 use crate::object_detection_2d::cells::cells;
@@ -18,8 +20,6 @@ use crate::object_detection_2d::cells::cells;
 const WIDTH: usize = 128;
 /// Number of logits of the distances to a box's four sides.
 pub const DISTANCES: usize = 4 * BINS;
-/// Slope of every activation for negative values.
-const SLOPE: f64 = 0.1;
 /// Score of an untrained head (Lin et al., Focal loss, section 4.1).
 const PRIOR: f32 = 0.01;
 
@@ -185,7 +185,7 @@ impl CspBlock {
 
 impl Head {
     fn forward(&self, features: Tensor<4>) -> Tensor<4> {
-        self.output.forward(activated(&self.conv, features))
+        conv2d(&self.output, activated(&self.conv, features))
     }
 }
 
@@ -199,7 +199,7 @@ fn conv(inputs: usize, outputs: usize, side: usize, stride: usize, device: &Devi
 }
 
 fn activated(conv: &Conv2d, features: Tensor<4>) -> Tensor<4> {
-    leaky_relu(conv.forward(features), SLOPE)
+    Activation::LeakyRelu.apply(conv2d(conv, features))
 }
 
 fn doubled(features: Tensor<4>) -> Tensor<4> {

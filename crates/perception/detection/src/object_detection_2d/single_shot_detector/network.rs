@@ -3,7 +3,6 @@
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{Initializer, PaddingConfig2d};
-use burn::tensor::activation::relu6;
 use burn::tensor::module::interpolate;
 use burn::tensor::ops::{InterpolateMode, InterpolateOptions};
 use burn::tensor::{Device, Tensor};
@@ -11,6 +10,7 @@ use opendr_engine::Result;
 use opendr_training::layers::{
     Activation, ConvNormAct, MobileNetV1, MobileNetV1Config, SeparableConv, SeparableConvConfig,
 };
+use opendr_training::operations::{conv2d, relu6};
 use opendr_training::weights::{Rules, WeightTable};
 
 use super::layout::Layout;
@@ -109,7 +109,7 @@ impl Separable {
     }
 
     fn linear(&self, input: Tensor<4>) -> Tensor<4> {
-        self.pointwise.forward(relu6(self.depthwise.forward(input)))
+        conv2d(&self.pointwise, relu6(conv2d(&self.depthwise, input)))
     }
 
     fn forward(&self, input: Tensor<4>) -> Tensor<4> {
@@ -242,7 +242,7 @@ impl Network {
     }
 
     fn features(&self, mut trunk: Vec<Tensor<4>>) -> Vec<Tensor<4>> {
-        let coarse = trunk.pop().map(|coarse| relu6(self.lateral.forward(coarse)));
+        let coarse = trunk.pop().map(|coarse| relu6(conv2d(&self.lateral, coarse)));
         let mut levels = Vec::with_capacity(2 + self.coarser.len());
         if let (Some(finer), Some(fine), Some(coarse)) = (&self.finer, trunk.pop(), &coarse) {
             levels.push(finer.forward(fine, coarse.clone()));
@@ -306,7 +306,7 @@ impl Finer {
     fn forward(&self, fine: Tensor<4>, coarse: Tensor<4>) -> Tensor<4> {
         let [_, _, rows, columns] = fine.dims();
         let nearest = InterpolateOptions::new(InterpolateMode::Nearest).with_output_size([rows, columns]);
-        self.smooth.forward(relu6(self.lateral.forward(fine)) + interpolate(coarse, nearest))
+        self.smooth.forward(relu6(conv2d(&self.lateral, fine)) + interpolate(coarse, nearest))
     }
 }
 

@@ -10,6 +10,7 @@ use burn::tensor::{Device, Tensor, s};
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result};
 use opendr_training::layers::{Activation, ConvNormAct, ConvNormActConfig};
+use opendr_training::operations::{add_act, conv2d};
 use opendr_training::weights::{Rules, WeightTable};
 
 use super::STRIDES;
@@ -384,7 +385,7 @@ impl CspBlock {
 impl Bottleneck {
     fn forward(&self, features: Tensor<4>) -> Tensor<4> {
         let refined = self.conv.forward(self.reduce.forward(features.clone()));
-        if self.residual { refined + features } else { refined }
+        if self.residual { add_act(refined, features, Activation::Identity) } else { refined }
     }
 }
 
@@ -409,10 +410,10 @@ impl Head {
         let tower = |layers: &[SpatialConv]| {
             layers.iter().fold(features.clone(), |features, layer| layer.forward(features))
         };
-        let classes = score(self.classes.forward(tower(&self.class_tower)));
+        let classes = score(conv2d(&self.classes, tower(&self.class_tower)));
         let box_features = tower(&self.box_tower);
-        let boxes = self.boxes.forward(box_features.clone());
-        let objectness = score(self.objectness.forward(box_features));
+        let boxes = conv2d(&self.boxes, box_features.clone());
+        let objectness = score(conv2d(&self.objectness, box_features));
         Tensor::cat(vec![boxes, objectness, classes], 1)
     }
 }

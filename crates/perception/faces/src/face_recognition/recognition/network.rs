@@ -5,6 +5,7 @@ use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, Initializer, Linear, LinearConfig};
 use burn::tensor::{Device, Tensor};
 use opendr_training::layers::{MobileNetV1, MobileNetV1Config};
+use opendr_training::operations::{batch_norm, conv2d};
 
 use super::SIDE;
 
@@ -42,9 +43,9 @@ impl Network {
 
     /// Computes embeddings `[batch, dimension]` of faces `[batch, 3, 112, 112]` with levels 0..=255.
     pub fn embed(&self, faces: Tensor<4>) -> Tensor<2> {
-        let features = self.spatial.forward(self.backbone.forward(faces * (1.0 / 127.5) - 1.0));
+        let features = conv2d(&self.spatial, self.backbone.forward(faces * (1.0 / 127.5) - 1.0));
         let [batch, channels, ..] = features.dims();
-        self.norm.forward(self.head.forward(features.reshape([batch, channels])))
+        batch_norm(&self.norm, self.head.forward(features.reshape([batch, channels])))
     }
 
     /// Returns the cosines `[batch, classes]` between embeddings and the centres of the classes.

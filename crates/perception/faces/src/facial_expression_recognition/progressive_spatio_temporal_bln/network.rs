@@ -3,8 +3,9 @@
 use burn::module::{Initializer, Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, LinearConfig, PaddingConfig2d};
-use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
+use opendr_training::layers::Activation;
+use opendr_training::operations::{add_act, batch_norm, batch_norm_act, conv2d};
 
 /// Kernel size over time, in frames.
 const KERNEL: usize = 9;
@@ -63,7 +64,7 @@ impl BilinearNetwork {
 
     /// Computes logits `[batch, classes]` of clips `[batch, features, frames, landmarks]`.
     pub fn forward(&self, clips: Tensor<4>) -> Tensor<2> {
-        let signal = self.scale.forward(clips);
+        let signal = batch_norm(&self.scale, clips);
         let signal = self.layers.iter().fold(signal, |signal, layer| layer.forward(signal));
         let [batch, channels, frames, points] = signal.dims();
         let pooled =
@@ -99,8 +100,8 @@ impl Bilinear {
         let [batch, channels, frames, points] = signal.dims();
         let rows = signal.clone().reshape([batch * channels * frames, points]);
         let mixed = rows.matmul(self.landmarks.val()).reshape([batch, channels, frames, points]);
-        let mixed = relu(self.channels_norm.forward(self.channels.forward(mixed)));
-        let moved = self.time_norm.forward(self.time.forward(mixed));
-        relu(self.dropout.forward(moved) + self.past.forward(signal))
+        let mixed = batch_norm_act(&self.channels_norm, Activation::Relu, conv2d(&self.channels, mixed));
+        let moved = batch_norm(&self.time_norm, conv2d(&self.time, mixed));
+        add_act(self.dropout.forward(moved), conv2d(&self.past, signal), Activation::Relu)
     }
 }

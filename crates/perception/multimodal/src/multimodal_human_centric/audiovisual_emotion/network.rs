@@ -3,9 +3,10 @@
 use burn::module::Module;
 use burn::nn::conv::{Conv1d, Conv1dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, LinearConfig, PaddingConfig1d};
-use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
 use opendr_perception_common::small_backbone::SmallBackbone;
+use opendr_training::layers::Activation;
+use opendr_training::operations::{batch_norm_act, conv1d};
 
 use super::AudiovisualFusion;
 use super::cross_attention::CrossAttention;
@@ -123,6 +124,8 @@ impl TimeBlocks {
 
     fn forward(&self, series: Tensor<3>) -> Tensor<3> {
         let layers = self.convolutions.iter().zip(&self.norms);
-        layers.fold(series, |series, (convolution, norm)| relu(norm.forward(convolution.forward(series))))
+        layers.fold(series, |series, (convolution, norm)| {
+            batch_norm_act(norm, Activation::Relu, conv1d(convolution, series))
+        })
     }
 }

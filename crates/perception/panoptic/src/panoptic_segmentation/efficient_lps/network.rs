@@ -5,6 +5,7 @@ use burn::nn::PaddingConfig2d;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::tensor::{Device, Tensor};
 use opendr_training::layers::{BasicBlock, ConvNormAct, ConvNormActConfig, bilinear};
+use opendr_training::operations::conv2d;
 
 use super::CHANNELS;
 
@@ -50,6 +51,6 @@ impl RangeNetwork {
             let [_, _, rows, columns] = beside.dims();
             x = block.forward(Tensor::cat(vec![beside, bilinear(x, [rows, columns])], 1));
         }
-        self.scores.forward(x)
+        conv2d(&self.scores, x)
     }
 }

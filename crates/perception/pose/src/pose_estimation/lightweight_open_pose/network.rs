@@ -4,11 +4,11 @@ use burn::config::Config;
 use burn::module::{Module, Param};
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{Initializer, PaddingConfig2d};
-use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
 use opendr_training::layers::{
     Activation, MobileNetV1, MobileNetV1Config, SeparableConv, SeparableConvConfig,
 };
+use opendr_training::operations::{add_act, conv2d, relu};
 
 use super::STRIDE;
 use crate::pose_estimation::part_affinity::{FIELDS, HEAT_MAPS};
@@ -184,9 +184,9 @@ struct Features {
 
 impl Features {
     fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let x = relu(self.align.forward(x));
+        let x = relu(conv2d(&self.align, x));
         let trunk = self.trunk.iter().fold(x.clone(), |x, conv| conv.forward(x));
-        self.last.forward(x + trunk)
+        self.last.forward(add_act(x, trunk, Activation::Identity))
     }
 }
 
@@ -205,7 +205,7 @@ impl Heads {
     }
 
     fn forward(&self, x: Tensor<4>) -> Maps {
-        let maps = |[hidden, last]: &[Conv2d; 2], x: Tensor<4>| last.forward(relu(hidden.forward(x)));
+        let maps = |[hidden, last]: &[Conv2d; 2], x: Tensor<4>| conv2d(last, relu(conv2d(hidden, x)));
         [maps(&self.heat, x.clone()), maps(&self.fields, x)]
     }
 }
@@ -232,8 +232,9 @@ struct RefinementBlock {
 
 impl RefinementBlock {
     fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let x = relu(self.align.forward(x));
-        self.trunk.iter().fold(x.clone(), |x, conv| conv.forward(x)) + x
+        let x = relu(conv2d(&self.align, x));
+        let trunk = self.trunk.iter().fold(x.clone(), |x, conv| conv.forward(x));
+        add_act(trunk, x, Activation::Identity)
     }
 }
 
@@ -255,9 +256,9 @@ impl Conv {
     }
 
     fn forward(&self, x: Tensor<4>) -> Tensor<4> {
-        let x = relu(self.over_space.forward(x));
+        let x = relu(conv2d(&self.over_space, x));
         match &self.over_channels {
-            Some(conv) => relu(conv.forward(x)),
+            Some(conv) => relu(conv2d(conv, x)),
             None => x,
         }
     }

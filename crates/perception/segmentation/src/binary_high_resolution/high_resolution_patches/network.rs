@@ -3,8 +3,9 @@
 use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig};
-use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
+use opendr_training::layers::Activation;
+use opendr_training::operations::{batch_norm_act, conv2d};
 
 use super::PatchArchitecture;
 
@@ -44,7 +45,7 @@ impl PatchNetwork {
     /// Returns logits `[batch, 2, rows, columns]` of `[batch, 3, height, width]`, one row and column for a patch.
     pub fn forward(&self, pictures: Tensor<4>) -> Tensor<4> {
         let features = self.third.forward(self.second.forward(self.first.forward(pictures)));
-        self.answer.forward(features)
+        conv2d(&self.answer, features)
     }
 }
 
@@ -55,6 +56,6 @@ impl Block {
     }
 
     fn forward(&self, features: Tensor<4>) -> Tensor<4> {
-        relu(self.norm.forward(self.conv.forward(features)))
+        batch_norm_act(&self.norm, Activation::Relu, conv2d(&self.conv, features))
     }
 }

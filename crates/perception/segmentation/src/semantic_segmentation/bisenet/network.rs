@@ -3,9 +3,10 @@
 use burn::module::Module;
 use burn::nn::PaddingConfig2d;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
-use burn::tensor::activation::{relu, sigmoid};
+use burn::tensor::activation::sigmoid;
 use burn::tensor::{Device, Tensor};
 use opendr_training::layers::{BasicBlock, ConvNormAct, ConvNormActConfig, bilinear};
+use opendr_training::operations::{conv2d, relu};
 
 /// Network from images to class scores.
 #[derive(Module, Debug)]
@@ -67,7 +68,7 @@ impl BisenetNetwork {
         }
         // The last two stages, at 1/16 and 1/32 of the resolution, each weighted by channel attention.
         let deep = stages.split_off(2);
-        let whole = self.tail.forward(mean(x));
+        let whole = conv2d(&self.tail, mean(x));
         let weighed = deep.into_iter().zip(&self.attention).enumerate().map(|(stage, (x, attention))| {
             let x = x.clone() * sigmoid(attention.forward(mean(x)));
             if stage == 1 { x + whole.clone() } else { x }
@@ -78,7 +79,7 @@ impl BisenetNetwork {
         let fused = self.fuse.forward(Tensor::cat(parts, 1));
         let gate = self.gate.iter().fold(mean(fused.clone()), |x, layer| layer.forward(relu(x)));
         let fused = fused.clone() + fused * sigmoid(gate);
-        bilinear(self.scores.forward(self.head.forward(fused)), [height, width])
+        bilinear(conv2d(&self.scores, self.head.forward(fused)), [height, width])
     }
 }
 

@@ -4,8 +4,8 @@ use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::nn::pool::{AvgPool2d, AvgPool2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, LinearConfig, PaddingConfig2d};
-use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
+use opendr_training::operations::{batch_norm, conv2d, relu};
 
 use super::{EdgeSpeechNet, EdgeSpeechNetsKind};
 use crate::speech_recognition::word_learner::WordKind as _;
@@ -74,15 +74,15 @@ impl EdgeSpeechNetsNetwork {
     /// Returns logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
     pub fn forward(&self, cepstra: Tensor<3>) -> Tensor<2> {
         let [batch, coefficients, frames] = cepstra.dims();
-        let picture = self.scale.forward(cepstra).reshape([batch, 1, coefficients, frames]);
-        let features = relu(self.first.forward(picture));
+        let picture = batch_norm(&self.scale, cepstra).reshape([batch, 1, coefficients, frames]);
+        let features = relu(conv2d(&self.first, picture));
         let features = match &self.pool {
             Some(pool) => pool.forward(features),
             None => features,
         };
         let features = self.blocks.iter().fold(features, |features, block| block.forward(features));
         let features = match &self.last {
-            Some(last) => relu(last.forward(features)),
+            Some(last) => relu(conv2d(last, features)),
             None => features,
         };
         let [_, channels, height, width] = features.dims();
@@ -97,8 +97,8 @@ impl Block {
             Some(before) => before.forward(features.clone()),
             None => features.clone(),
         };
-        let inner = self.between.forward(relu(self.inner.forward(inner)));
-        relu(self.outer.forward(inner)) + features
+        let inner = batch_norm(&self.between, relu(conv2d(&self.inner, inner)));
+        relu(conv2d(&self.outer, inner)) + features
     }
 }
 

@@ -3,8 +3,9 @@
 use burn::module::Module;
 use burn::nn::conv::{Conv1d, Conv1dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, LinearConfig, PaddingConfig1d};
-use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
+use opendr_training::layers::Activation;
+use opendr_training::operations::{add_act, batch_norm, conv1d, relu};
 
 use super::MatchboxNetKind;
 use crate::speech_recognition::word_learner::WordKind as _;
@@ -92,7 +93,7 @@ impl MatchboxNetNetwork {
 
     /// Returns logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
     pub fn forward(&self, cepstra: Tensor<3>) -> Tensor<2> {
-        let signal = relu(self.prologue.forward(self.scale.forward(cepstra)));
+        let signal = relu(self.prologue.forward(batch_norm(&self.scale, cepstra)));
         let signal = self.blocks.iter().fold(signal, |signal, block| block.forward(signal));
         let signal = self.dropout.forward(relu(self.epilogue.forward(signal)));
         let signal = self.dropout.forward(relu(self.mixing.forward(signal)));
@@ -110,7 +111,7 @@ impl Block {
             let convolved = convolution.forward(signal);
             if index < last { self.dropout.forward(relu(convolved)) } else { convolved }
         });
-        self.dropout.forward(relu(convolved + past))
+        self.dropout.forward(add_act(convolved, past, Activation::Relu))
     }
 }
 
@@ -137,6 +138,6 @@ impl Pointwise {
     }
 
     fn forward(&self, signal: Tensor<3>) -> Tensor<3> {
-        self.norm.forward(self.convolution.forward(signal))
+        batch_norm(&self.norm, conv1d(&self.convolution, signal))
     }
 }

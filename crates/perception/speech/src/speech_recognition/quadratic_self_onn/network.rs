@@ -4,6 +4,7 @@ use burn::module::Module;
 use burn::nn::pool::{MaxPool2d, MaxPool2dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, LinearConfig};
 use burn::tensor::{Device, Tensor};
+use opendr_training::operations::batch_norm;
 
 use super::QuadraticSelfOnnKind;
 use super::quadratic_convolution::QuadraticConvolution;
@@ -42,7 +43,7 @@ impl QuadraticSelfOnnNetwork {
     /// Returns logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
     pub fn forward(&self, cepstra: Tensor<3>) -> Tensor<2> {
         let [batch, coefficients, frames] = cepstra.dims();
-        let picture = self.scale.forward(cepstra).reshape([batch, 1, coefficients, frames]);
+        let picture = batch_norm(&self.scale, cepstra).reshape([batch, 1, coefficients, frames]);
         let features = self.pool.forward(self.first.forward(picture)).tanh();
         let features = self.pool.forward(self.second.forward(features)).tanh();
         let [_, channels, height, width] = features.dims();

@@ -4,6 +4,7 @@ use burn::module::{Initializer, Module};
 use burn::nn::PaddingConfig2d;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
 use burn::tensor::{Device, Tensor};
+use opendr_training::operations::conv2d;
 
 /// Side of a kernel.
 const SIDE: usize = 3;
@@ -64,7 +65,7 @@ impl QuadraticConvolution {
         let powers = Tensor::cat(powers, 1);
         let [_, _, height, width] = powers.dims();
         let bordered = powers.clone().pad((1, 1, 1, 1), 0.0f32);
-        let linear = self.linear.forward(powers);
+        let linear = conv2d(&self.linear, powers);
         distances().zip(&self.products).fold(linear, |sum, ([down, right], weights)| {
             let [rows, columns] =
                 [height + SIDE - 1 - down.unsigned_abs(), width + SIDE - 1 - right.unsigned_abs()];

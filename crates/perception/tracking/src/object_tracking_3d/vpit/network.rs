@@ -6,6 +6,7 @@ use burn::tensor::module::conv2d;
 use burn::tensor::ops::ConvOptions;
 use burn::tensor::{Device, Tensor};
 use opendr_training::layers::{ConvNormAct, ConvNormActConfig};
+use opendr_training::operations;
 
 use super::layout::{CELLS, CHANNELS, FEATURES, PLACES, TEMPLATE};
 
@@ -37,7 +38,7 @@ impl VpitNetwork {
 
     /// Computes features of views, `[views, channels, 64, 64]` to `[views, features, 32, 32]`.
     pub fn features(&self, views: Tensor<4>) -> Tensor<4> {
-        self.last.forward(self.layers.iter().fold(views, |x, layer| layer.forward(x)))
+        operations::conv2d(&self.last, self.layers.iter().fold(views, |x, layer| layer.forward(x)))
     }
 
     /// Returns the logits `[pairs, positions, positions]` of the centres of `templates` at each position of `views`, both

@@ -1,4 +1,4 @@
-//! Convolutions of images.
+//! Convolutions of images and sequences.
 
 use burn::backend::Flex;
 use burn::backend::autodiff::NodeId;
@@ -6,68 +6,123 @@ use burn::backend::autodiff::checkpoint::base::Checkpointer;
 use burn::backend::autodiff::checkpoint::strategy::NoCheckpointing;
 use burn::backend::autodiff::grads::Gradients;
 use burn::backend::autodiff::ops::{Backward, Ops, OpsKind};
-use burn::nn::PaddingConfig2d;
-use burn::nn::conv::Conv2d;
-use burn::tensor::{DType, Tensor};
+use burn::nn::conv::{Conv1d, Conv2d};
+use burn::nn::{PaddingConfig1d, PaddingConfig2d};
+use burn::tensor::Tensor;
 use opendr_kernels::{TrainingConvolution, Window, add_column_sums};
 
-use super::{Cpu, CpuTrained, Trained, channels_last, compute, from_channels_last, numbers, shape, tensor};
+use super::{
+    Cpu, CpuTrained, Own, Trained, channels_last, compute, from_channels_last, numbers, shape, tensor,
+};
 
 /// Returns the convolution of images `[batch, channels, height, width]`, as [`Conv2d::forward`].
 pub fn conv2d(layer: &Conv2d, x: Tensor<4>) -> Tensor<4> {
-    let Some(sizes) = sizes(layer, &x) else { return layer.forward(x) };
-    let (weight, bias) = (layer.weight.val(), layer.bias.as_ref().map(|bias| bias.val()));
-    let parts = [x.clone().try_into_primitive::<Trained>(), weight.clone().try_into_primitive::<Trained>()];
-    if let [Ok(x), Ok(weight)] = parts {
-        return match bias.map(|bias| bias.try_into_primitive::<Trained>()) {
-            None => Tensor::from_primitive::<Trained>(without_bias(x, weight, sizes)),
-            Some(Ok(bias)) => Tensor::from_primitive::<Trained>(with_bias(x, weight, bias, sizes)),
-            Some(Err(_)) => layer.forward(Tensor::from_primitive::<Trained>(x)),
+    let pads = match layer.padding {
+        PaddingConfig2d::Valid => Some([0; 4]),
+        PaddingConfig2d::Explicit(top, left, bottom, right) => Some([top, left, bottom, right]),
+        PaddingConfig2d::Same => None,
+    };
+    let [_, _, height, width] = x.dims();
+    let [_, _, kernel_height, kernel_width] = layer.weight.dims();
+    let axes = Axes {
+        kernel: [kernel_height, kernel_width],
+        strides: layer.stride,
+        dilations: layer.dilation,
+        input: [height, width],
+    };
+    let bias = layer.bias.as_ref().map(|bias| bias.val());
+    let own =
+        pads.and_then(|pads| convolve(&x, &layer.weight.val(), bias, &axes.window(pads)?, layer.groups));
+    own.unwrap_or_else(|| layer.forward(x))
+}
+
+/// Returns the convolution of sequences `[batch, channels, length]`, as [`Conv1d::forward`].
+pub fn conv1d(layer: &Conv1d, x: Tensor<3>) -> Tensor<3> {
+    let pads = match layer.padding {
+        PaddingConfig1d::Valid => Some([0; 4]),
+        PaddingConfig1d::Explicit(left, right) => Some([0, left, 0, right]),
+        PaddingConfig1d::Same => None,
+    };
+    let [_, _, length] = x.dims();
+    let [_, _, kernel] = layer.weight.dims();
+    let axes = Axes {
+        kernel: [1, kernel],
+        strides: [1, layer.stride],
+        dilations: [1, layer.dilation],
+        input: [1, length],
+    };
+    let bias = layer.bias.as_ref().map(|bias| bias.val());
+    let own =
+        pads.and_then(|pads| convolve(&x, &layer.weight.val(), bias, &axes.window(pads)?, layer.groups));
+    own.unwrap_or_else(|| layer.forward(x))
+}
+
+/// A convolution along two axes, of which one is a single pixel in sequences.
+struct Axes {
+    kernel: [usize; 2],
+    strides: [usize; 2],
+    dilations: [usize; 2],
+    input: [usize; 2],
+}
+
+impl Axes {
+    /// Returns the geometry with padding above, to the left, below and to the right; `None` where the input is smaller than the kernel.
+    fn window(&self, pads: [usize; 4]) -> Option<Window> {
+        let &Self { kernel, strides, dilations, input } = self;
+        let size = |axis: usize| {
+            let span = (kernel[axis] - 1) * dilations[axis] + 1;
+            let last = (input[axis] + pads[axis] + pads[axis + 2]).checked_sub(span)?;
+            Some(last / strides[axis] + 1)
         };
-    }
-    let parts = [x.clone().try_into_primitive::<Flex>(), weight.try_into_primitive::<Flex>()];
-    let bias = bias.map(|bias| bias.try_into_primitive::<Flex>()).transpose();
-    match (parts, bias) {
-        ([Ok(x), Ok(weight)], Ok(bias)) => {
-            Tensor::from_primitive::<Flex>(forward(&sizes, &x, &weight, bias.as_ref()))
-        }
-        _ => layer.forward(x),
+        let output = [size(0)?, size(1)?];
+        Some(Window { kernel, strides, dilations, pads: [pads[0], pads[1]], input, output })
     }
 }
 
-/// Returns the sizes, where the kernels compute them.
-fn sizes(layer: &Conv2d, x: &Tensor<4>) -> Option<TrainingConvolution> {
-    let [batch, channels, height, width] = x.dims();
-    let pads = match layer.padding {
-        PaddingConfig2d::Valid => [0; 4],
-        PaddingConfig2d::Explicit(top, left, bottom, right) => [top, left, bottom, right],
-        PaddingConfig2d::Same => return None,
+/// Returns the convolution of a tensor on the CPU; `None` for others.
+fn convolve<const D: usize>(
+    x: &Tensor<D>,
+    weight: &Tensor<D>,
+    bias: Option<Tensor<1>>,
+    window: &Window,
+    groups: usize,
+) -> Option<Tensor<D>> {
+    let (shape, outputs) = (x.dims(), weight.dims()[0]);
+    let (batch, channels) = (shape[0], shape[1]);
+    if weight.dims()[1] * groups != channels {
+        return None;
+    }
+    let sizes = TrainingConvolution { batch, channels, outputs, groups, window: *window };
+    let bias = match &bias {
+        Some(bias) => Some(Own::of(bias)?),
+        None => None,
     };
-    let [outputs, _, kernel_height, kernel_width] = layer.weight.dims();
-    let (kernel, input) = ([kernel_height, kernel_width], [height, width]);
-    let size = |axis: usize| {
-        let span = (kernel[axis] - 1) * layer.dilation[axis] + 1;
-        let last = (input[axis] + pads[axis] + pads[axis + 2]).checked_sub(span)?;
-        Some(last / layer.stride[axis] + 1)
-    };
-    let window = Window {
-        kernel,
-        strides: layer.stride,
-        dilations: layer.dilation,
-        pads: [pads[0], pads[1]],
-        input,
-        output: [size(0)?, size(1)?],
-    };
-    let is_computed = x.dtype() == DType::F32 && layer.weight.dims()[1] * layer.groups == channels;
-    is_computed.then_some(TrainingConvolution { batch, channels, outputs, groups: layer.groups, window })
+    Some(match (Own::of(x)?, Own::of(weight)?, bias) {
+        (Own::Trained(x), Own::Trained(weight), None) => {
+            Tensor::from_primitive::<Trained>(without_bias(x, weight, sizes))
+        }
+        (Own::Trained(x), Own::Trained(weight), Some(Own::Trained(bias))) => {
+            Tensor::from_primitive::<Trained>(with_bias(x, weight, bias, sizes))
+        }
+        (Own::Plain(x), Own::Plain(weight), None) => {
+            Tensor::from_primitive::<Flex>(forward(&sizes, &x, &weight, None))
+        }
+        (Own::Plain(x), Own::Plain(weight), Some(Own::Plain(bias))) => {
+            Tensor::from_primitive::<Flex>(forward(&sizes, &x, &weight, Some(&bias)))
+        }
+        _ => return None,
+    })
 }
 
 fn forward(sizes: &TrainingConvolution, x: &Cpu, weight: &Cpu, bias: Option<&Cpu>) -> Cpu {
+    let mut of_output = shape(x);
+    let spatial = of_output.len() - 2;
+    of_output[1] = sizes.outputs;
+    of_output[2..].copy_from_slice(&sizes.window.output[2 - spatial..]);
     let (x, weight) = (channels_last(x), weight.to_contiguous());
     let bias = bias.map(Cpu::to_contiguous);
     let y = sizes.forward(compute(), numbers(&x), numbers(&weight), bias.as_ref().map(numbers));
-    let [height, width] = sizes.window.output;
-    from_channels_last(y, &[sizes.batch, sizes.outputs, height, width])
+    from_channels_last(y, &of_output)
 }
 
 /// Returns the gradients of input and weights that are wanted.
