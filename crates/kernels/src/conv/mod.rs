@@ -4,6 +4,7 @@
 //! input pixel below it. No patches are copied.
 
 mod depthwise;
+mod depthwise_gradient;
 mod filters;
 mod geometry;
 mod pair;

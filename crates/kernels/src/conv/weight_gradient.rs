@@ -1,7 +1,10 @@
-//! Gradients of the weights of dense convolutions, tap by tap.
+//! Gradients of the weights of convolutions: dense ones tap by tap.
 
+use super::depthwise_gradient::depthwise_weight_gradient;
 use super::pixel_products::{COLUMNS, PixelProducts, ROWS};
 use super::training::TrainingConvolution;
+use super::winograd::Winograd;
+use super::winograd_gradient::winograd_weight_gradient;
 use crate::aligned::{PATCH_GRADIENTS, PATCHES, SUMS, with_buffer};
 use crate::compute::Compute;
 use crate::isa::for_every_isa;
@@ -28,14 +31,29 @@ struct Block<'a> {
 // SAFETY: threads read the tensors and write disjoint pixels.
 unsafe impl Sync for Block<'_> {}
 
+impl TrainingConvolution {
+    /// Computes the gradient of the weights from the input and the gradient of the output.
+    ///
+    /// # Panics
+    /// When the lengths do not match.
+    pub fn weight_gradient(&self, compute: &Compute, x: &[f32], dy: &[f32], dw: &mut [f32]) {
+        self.check(x.len(), dw.len(), dy.len());
+        if dw.is_empty() || dy.is_empty() || x.is_empty() {
+            dw.fill(0.0);
+            return;
+        }
+        if self.is_depthwise() {
+            depthwise_weight_gradient(self, compute, x, dy, dw);
+        } else if self.groups == 1 && Winograd::has_kernel(&self.window, [self.outputs, self.channels]) {
+            winograd_weight_gradient(self, compute, x, dy, dw);
+        } else {
+            by_taps(self, compute, x, dy, dw);
+        }
+    }
+}
+
 /// Computes the gradient of the weights; the lengths have been checked.
-pub(super) fn weight_gradient(
-    conv: &TrainingConvolution,
-    compute: &Compute,
-    x: &[f32],
-    dy: &[f32],
-    dw: &mut [f32],
-) {
+fn by_taps(conv: &TrainingConvolution, compute: &Compute, x: &[f32], dy: &[f32], dw: &mut [f32]) {
     let (inputs, outputs, taps) = (conv.group_channels(), conv.group_outputs(), conv.taps());
     let of_plane = (COLUMNS / inputs).clamp(1, taps);
     let pixels = dy.len() / conv.outputs;

@@ -5,9 +5,10 @@ use std::str::FromStr;
 
 use burn::tensor::{Tensor, activation};
 use opendr_engine::{Error, Result};
+use opendr_kernels::Unary;
 use serde::{Deserialize, Serialize};
 
-use crate::operations::activate;
+use crate::operations::{RELU6, activate};
 
 /// Activation function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,8 +70,26 @@ impl Activation {
     pub fn apply<const D: usize>(self, x: Tensor<D>) -> Tensor<D> {
         match self {
             Self::Identity => x,
-            activation => activate(activation, &x).unwrap_or_else(|| activation.by_burn(x)),
+            activation => {
+                let own = activation.kernel().and_then(|kernel| activate(kernel, &x));
+                own.unwrap_or_else(|| activation.by_burn(x))
+            }
         }
+    }
+
+    /// Returns the function of the kernels; `None` where they lack its gradient.
+    pub(crate) fn kernel(self) -> Option<Unary> {
+        Some(match self {
+            Self::Identity => Unary::Identity,
+            Self::Relu => Unary::Relu,
+            Self::Relu6 => RELU6,
+            Self::LeakyRelu => Unary::LeakyRelu { slope: Self::LEAKY_SLOPE as f32 },
+            Self::HardSwish => Unary::HardSwish,
+            Self::Silu => Unary::Swish,
+            Self::Sigmoid => Unary::Sigmoid,
+            Self::Tanh => Unary::Tanh,
+            Self::Gelu => return None,
+        })
     }
 
     fn by_burn<const D: usize>(self, x: Tensor<D>) -> Tensor<D> {

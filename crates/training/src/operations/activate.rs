@@ -5,43 +5,29 @@ use burn::backend::autodiff::checkpoint::base::Checkpointer;
 use burn::backend::autodiff::checkpoint::strategy::NoCheckpointing;
 use burn::backend::autodiff::grads::Gradients;
 use burn::backend::autodiff::ops::{Backward, Ops, OpsKind};
-use burn::tensor::Tensor;
+use burn::tensor::{Tensor, activation};
 use opendr_kernels::Unary;
 
 use super::{
     Cpu, Own, Trained, channels_last, channels_last_of, channels_second, compute, contiguous,
     from_channels_last, numbers, shape, tensor,
 };
-use crate::layers::Activation;
 
-/// Returns the function of the kernels; `None` where they lack its gradient.
-pub(super) fn kernel_of(activation: Activation) -> Option<Unary> {
-    Some(match activation {
-        Activation::Identity => Unary::Identity,
-        Activation::Relu => Unary::Relu,
-        Activation::Relu6 => Unary::Clip { low: 0.0, high: 6.0 },
-        Activation::LeakyRelu => Unary::LeakyRelu { slope: Activation::LEAKY_SLOPE as f32 },
-        Activation::HardSwish => Unary::HardSwish,
-        Activation::Silu => Unary::Swish,
-        Activation::Sigmoid => Unary::Sigmoid,
-        Activation::Tanh => Unary::Tanh,
-        Activation::Gelu => return None,
-    })
-}
+/// `min(max(x, 0), 6)`.
+pub(crate) const RELU6: Unary = Unary::Clip { low: 0.0, high: 6.0 };
 
 /// Returns `max(x, 0)`.
 pub fn relu<const D: usize>(x: Tensor<D>) -> Tensor<D> {
-    Activation::Relu.apply(x)
+    activate(Unary::Relu, &x).unwrap_or_else(|| activation::relu(x))
 }
 
 /// Returns `min(max(x, 0), 6)`.
 pub fn relu6<const D: usize>(x: Tensor<D>) -> Tensor<D> {
-    Activation::Relu6.apply(x)
+    activate(RELU6, &x).unwrap_or_else(|| activation::relu6(x))
 }
 
 /// Returns the activation of a tensor on the CPU; `None` for others.
-pub(crate) fn activate<const D: usize>(activation: Activation, x: &Tensor<D>) -> Option<Tensor<D>> {
-    let kernel = kernel_of(activation)?;
+pub(crate) fn activate<const D: usize>(kernel: Unary, x: &Tensor<D>) -> Option<Tensor<D>> {
     let own = Own::of(x)?;
     let from = in_order(own.primitive());
     let mut y = vec![0.0; numbers(&from).len()];

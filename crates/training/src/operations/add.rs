@@ -8,7 +8,6 @@ use burn::backend::autodiff::ops::{Backward, Ops, OpsKind};
 use burn::tensor::Tensor;
 use opendr_kernels::{Unary, add_activated};
 
-use super::activate::kernel_of;
 use super::{
     Cpu, Own, Trained, channels_last, channels_last_of, channels_second, compute, from_channels_last,
     numbers, shape,
@@ -22,7 +21,7 @@ pub fn add_act<const D: usize>(left: Tensor<D>, right: Tensor<D>, activation: Ac
 
 /// Returns the sum where both tensors lie on the CPU, and the gradient follows from the output.
 fn own<const D: usize>(left: &Tensor<D>, right: &Tensor<D>, activation: Activation) -> Option<Tensor<D>> {
-    let kernel = kernel_of(activation).filter(|kernel| {
+    let kernel = activation.kernel().filter(|kernel| {
         matches!(kernel, Unary::Identity | Unary::Relu | Unary::Clip { .. } | Unary::LeakyRelu { .. })
     })?;
     if left.dims() != right.dims() {

@@ -12,7 +12,6 @@ use burn::nn::BatchNorm;
 use burn::tensor::{Tensor, TensorData};
 use opendr_kernels::{BatchNormalization, BatchStatistics, Unary};
 
-use super::activate::kernel_of;
 use super::{
     Cpu, CpuTrained, Own, Trained, channels_last, channels_last_of, channels_second, compute,
     from_channels_last, numbers, shape, tensor,
@@ -26,7 +25,7 @@ pub fn batch_norm<const D: usize>(layer: &BatchNorm, x: Tensor<D>) -> Tensor<D> 
 
 /// Returns the activation of the normalisation of `[batch, channels, ...]`.
 pub fn batch_norm_act<const D: usize>(layer: &BatchNorm, activation: Activation, x: Tensor<D>) -> Tensor<D> {
-    let own = kernel_of(activation).and_then(|kernel| match Own::of(&x)? {
+    let own = activation.kernel().and_then(|kernel| match Own::of(&x)? {
         Own::Trained(own) if layer.training.is_enabled() => train(layer, &x, &own, kernel),
         Own::Trained(_) => None,
         Own::Plain(own) => infer(layer, &own, kernel),

@@ -16,7 +16,7 @@ use burn::backend::{Autodiff, Flex};
 use burn::tensor::{DType, Tensor, TensorData};
 use opendr_kernels::Compute;
 
-pub(crate) use activate::activate;
+pub(crate) use activate::{RELU6, activate};
 pub use activate::{relu, relu6};
 pub use add::add_act;
 pub use batch_norm::{batch_norm, batch_norm_act};
