@@ -8,7 +8,6 @@ use opendr_datasets::UnlabelledImages;
 use opendr_datasets::loader::{ImageBatch, ImageBatches};
 use opendr_engine::{Result, learner::FitJob, model::Manifest};
 use opendr_training::export::{self, Input};
-use opendr_training::operations::{conv2d, relu};
 use opendr_training::{Container, Loss, Objective, TrainingParams, fit_network, seeded_device};
 use opendr_vision::Preprocess;
 
@@ -20,7 +19,7 @@ struct Autoencoder {
 }
 impl Autoencoder {
     fn forward(&self, images: Tensor<4>) -> Tensor<4> {
-        self.decoder.forward(relu(conv2d(&self.encoder, images)))
+        self.decoder.forward(relu(self.encoder.forward(images)))
     }
 }
 
