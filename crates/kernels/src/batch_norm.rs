@@ -153,13 +153,43 @@ impl BatchNormalization<'_> {
             term[channel] = (along * f64::from(mean[channel]) - scale * of_dy[channel] / pixels) as f32;
             dgamma[channel] = (of_products[channel] * inverse.sqrt()) as f32;
         }
-        let at_once = pixels_of_chunk(channels) * channels;
+        self.combine(compute, x, dy, &affine, [&slope, &term]);
+        [dgamma, of_dy.into_iter().map(|sum| sum as f32).collect()]
+    }
+
+    /// Replaces the gradient of the output by that of the input, with statistics that are given.
+    ///
+    /// # Panics
+    /// When the lengths do not match.
+    pub fn inference_backward(
+        &self,
+        compute: &Compute,
+        x: &[f32],
+        statistics: &BatchStatistics,
+        dy: &mut [f32],
+    ) {
+        self.check(x, dy);
+        self.check_statistics(statistics);
+        let affine = self.affine(statistics);
+        let zeros = vec![0.0; affine.scale.len()];
+        self.combine(compute, x, dy, &affine, [&zeros, &zeros]);
+    }
+
+    /// Replaces `dy` by `scale dy + slope x + term`.
+    fn combine(
+        &self,
+        compute: &Compute,
+        x: &[f32],
+        dy: &mut [f32],
+        affine: &Affine,
+        [slope, term]: [&[f32]; 2],
+    ) {
+        let at_once = pixels_of_chunk(self.channels()) * self.channels().max(1);
         compute.pool().run_on_pieces(dy, at_once, |chunk, dy| {
             let x = &x[chunk * at_once..][..dy.len()];
             // SAFETY: both have whole pixels; factors and terms are filled up.
-            unsafe { dispatch_combine(compute.isa(), x, dy, &affine, [&slope, &term], self) };
+            unsafe { dispatch_combine(compute.isa(), x, dy, affine, [slope, term], self) };
         });
-        [dgamma, of_dy.into_iter().map(|sum| sum as f32).collect()]
     }
 }
 

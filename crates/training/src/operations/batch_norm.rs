@@ -27,23 +27,80 @@ pub fn batch_norm<const D: usize>(layer: &BatchNorm, x: Tensor<D>) -> Tensor<D> 
 pub fn batch_norm_act<const D: usize>(layer: &BatchNorm, activation: Activation, x: Tensor<D>) -> Tensor<D> {
     let own = activation.kernel().and_then(|kernel| match Own::of(&x)? {
         Own::Trained(own) if layer.training.is_enabled() => train(layer, &x, &own, kernel),
-        Own::Trained(_) => None,
-        Own::Plain(own) => infer(layer, &own, kernel),
+        Own::Trained(own) => frozen(layer, &own, kernel),
+        Own::Plain(own) => {
+            let parts =
+                [layer.gamma.val(), layer.beta.val(), layer.running_mean.value(), layer.running_var.value()];
+            let parts = parts.map(|part| part.try_into_primitive::<Flex>().ok());
+            Some(Tensor::from_primitive::<Flex>(Fixed::of(parts, layer.epsilon, kernel)?.forward(&own)))
+        }
     });
     own.unwrap_or_else(|| activation.apply(layer.forward(x)))
 }
 
-/// Normalises by the running statistics.
-fn infer<const D: usize>(layer: &BatchNorm, x: &Cpu, activation: Unary) -> Option<Tensor<D>> {
-    let vector = |tensor: Tensor<1>| tensor.try_into_primitive::<Flex>().ok().map(|own| own.to_contiguous());
-    let (gamma, beta) = (vector(layer.gamma.val())?, vector(layer.beta.val())?);
-    let [mean, variance] = [&layer.running_mean, &layer.running_var]
-        .map(|running| vector(running.value()).map(|own| numbers(&own).to_vec()));
-    let statistics = BatchStatistics { mean: mean?, variance: variance? };
-    let epsilon = layer.epsilon as f32;
-    let norm = BatchNormalization { gamma: numbers(&gamma), beta: numbers(&beta), epsilon, activation };
-    let y = norm.inference(compute(), numbers(&channels_last(x)), &statistics);
-    Some(Tensor::from_primitive::<Flex>(from_channels_last(y, &shape(x))))
+/// A normalisation by running statistics.
+#[derive(Debug)]
+struct Fixed {
+    gamma: Vec<f32>,
+    beta: Vec<f32>,
+    statistics: BatchStatistics,
+    epsilon: f32,
+    activation: Unary,
+}
+
+impl Fixed {
+    /// Creates it of gamma, beta, mean and variance.
+    fn of(parts: [Option<Cpu>; 4], epsilon: f64, activation: Unary) -> Option<Self> {
+        let parts = parts.map(|part| part.map(|part| numbers(&part.to_contiguous()).to_vec()));
+        let [gamma, beta, mean, variance] = parts;
+        let statistics = BatchStatistics { mean: mean?, variance: variance? };
+        Some(Self { gamma: gamma?, beta: beta?, statistics, epsilon: epsilon as f32, activation })
+    }
+
+    fn norm(&self) -> BatchNormalization<'_> {
+        let Self { gamma, beta, epsilon, activation, .. } = self;
+        BatchNormalization { gamma, beta, epsilon: *epsilon, activation: *activation }
+    }
+
+    fn forward(&self, x: &Cpu) -> Cpu {
+        let y = self.norm().inference(compute(), numbers(&channels_last(x)), &self.statistics);
+        from_channels_last(y, &shape(x))
+    }
+}
+
+/// Normalises by the running statistics, where the layer is not trained and the tensor has gradients.
+fn frozen<const D: usize>(layer: &BatchNorm, x: &CpuTrained, activation: Unary) -> Option<Tensor<D>> {
+    let parts = [layer.gamma.val(), layer.beta.val(), layer.running_mean.value(), layer.running_var.value()];
+    let parts = parts.map(|part| {
+        let part = part.try_into_primitive::<Trained>().ok()?;
+        (!part.is_tracked()).then(|| part.into_primitive())
+    });
+    let fixed = Arc::new(Fixed::of(parts, layer.epsilon, activation)?);
+    let y = fixed.forward(x.primitive());
+    let y = match Frozen.prepare::<NoCheckpointing>([x.node()]).compute_bound().stateful() {
+        OpsKind::Tracked(mut prepared) => {
+            let input = prepared.checkpoint(x);
+            prepared.finish((input, fixed), y)
+        }
+        OpsKind::UnTracked(prepared) => prepared.finish(y),
+    };
+    Some(Tensor::from_primitive::<Trained>(y))
+}
+
+#[derive(Debug)]
+struct Frozen;
+
+impl Backward<Flex, 1> for Frozen {
+    type State = (NodeId, Arc<Fixed>);
+
+    fn backward(self, ops: Ops<Self::State, 1>, gradients: &mut Gradients, checkpointer: &mut Checkpointer) {
+        let mut dy = channels_last_of(gradients.consume::<Flex>(&ops.node));
+        let ([parent], (x, fixed)) = (ops.parents, ops.state);
+        let x = channels_last(&checkpointer.retrieve_node_output::<Cpu>(x));
+        let Some(parent) = parent else { return };
+        fixed.norm().inference_backward(compute(), numbers(&x), &fixed.statistics, dy.storage_mut());
+        gradients.register::<Flex>(parent.id, channels_second(&dy));
+    }
 }
 
 /// Normalises by the statistics of the batch, and updates the running ones.

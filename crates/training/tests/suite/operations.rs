@@ -139,6 +139,10 @@ fn batch_normalizations() {
         for (ours, burns) in running(&ours).iter().zip(&running(&burns)) {
             assert_near(ours, burns, "running statistics");
         }
+        let frozen = ours.clone().freeze();
+        let by_us = pass(&x, |x| batch_norm_act(&frozen, activation, x), |_| Vec::new());
+        let by_burn = pass(&x, |x| activation_of_burn(activation, frozen.forward(x)), |_| Vec::new());
+        assert_passes(&by_us, &by_burn, "frozen");
         let (plain, x) = (ours.valid(), x.inner());
         let wanted = numbers(activation_of_burn(activation, plain.forward(x.clone())));
         assert_near(&numbers(batch_norm_act(&plain, activation, x)), &wanted, "without gradients");
