@@ -380,20 +380,10 @@ mod tests {
 
     use super::*;
     use crate::pool::WorkerPool;
+    use crate::reference::{assert_near, random};
 
-    fn random(length: usize, seed: usize) -> Vec<f32> {
-        (0..length)
-            .map(|i| ((i * 7919 + seed * 104_729 + i * i % 611) % 2003) as f32 / 1001.0 - 1.0)
-            .collect()
-    }
-
-    fn assert_near(got: &[f32], wanted: &[f64], what: &str) {
-        let largest = wanted.iter().fold(1e-3, |largest: f64, value| largest.max(value.abs()));
-        for (i, (got, wanted)) in got.iter().zip(wanted).enumerate() {
-            let distance = (f64::from(*got) - wanted).abs();
-            assert!(distance <= 1e-4 * largest, "{what}, {i}: {got} in place of {wanted}");
-        }
-    }
+    /// Distance between a number and its f64 reference, relative to the largest one.
+    const TOLERANCE: f64 = 1e-4;
 
     /// Output, gradient of the input, of gamma and of beta.
     fn by_definition(norm: &BatchNormalization<'_>, x: &[f32], dy: &[f32]) -> [Vec<f64>; 4] {
@@ -455,12 +445,12 @@ mod tests {
                         let (y, statistics) = norm.forward(&compute, &x);
                         let [dgamma, dbeta] = norm.backward(&compute, &x, &statistics, &mut dx);
                         let what = format!("{channels} channels, {pixels} pixels, {isa}");
-                        assert_near(&y, &y_wanted, &what);
+                        assert_near(&y, &y_wanted, TOLERANCE, &what);
                         if pixels > 1 {
-                            assert_near(&dx, &dx_wanted, &what);
+                            assert_near(&dx, &dx_wanted, TOLERANCE, &what);
                         }
-                        assert_near(&dgamma, &dgamma_wanted, &what);
-                        assert_near(&dbeta, &dbeta_wanted, &what);
+                        assert_near(&dgamma, &dgamma_wanted, TOLERANCE, &what);
+                        assert_near(&dbeta, &dbeta_wanted, TOLERANCE, &what);
                         let results = (y, dx, dgamma, dbeta, statistics);
                         assert_eq!(
                             *of_one.get_or_insert_with(|| results.clone()),

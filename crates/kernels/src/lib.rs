@@ -51,6 +51,8 @@ mod pool;
 mod pooling;
 mod product;
 mod quantized;
+#[cfg(test)]
+mod reference;
 mod softmax;
 mod unary;
 mod unary_gradient;

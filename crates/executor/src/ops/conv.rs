@@ -182,7 +182,7 @@ pub(crate) fn conv(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Option
 }
 
 /// Emits a convolution of an input and what is fused into it.
-fn emit_fused(
+pub(super) fn emit_fused(
     planner: &mut Planner<'_>,
     kernel: impl Kernel + 'static,
     x: Id,

@@ -12,7 +12,7 @@ use opendr_kernels::{
 };
 use opendr_onnx::proto::NodeProto;
 
-use super::conv::{ConvStep, constant_bias, finish};
+use super::conv::{ConvStep, constant_bias, emit_fused, finish};
 use super::fusion::{self, Fusible};
 use super::inputs::required;
 use crate::attributes::Attributes;
@@ -65,15 +65,14 @@ pub(crate) fn build(planner: &mut Planner<'_>, node: &NodeProto, inputs: &[Optio
     count(&shape)?;
     let phases = [geometry.phases(0), geometry.phases(1)];
     let is_empty = |phases: &[Phase]| phases.iter().any(|phase| phase.taps.is_empty());
-    let y = if geometry.outputs < MIN_OUTPUTS
+    if geometry.outputs < MIN_OUTPUTS
         || phases.iter().any(|phases| is_empty(phases))
         || phases[0].len() * phases[1].len() > MAX_PHASES
     {
-        by_products(planner, node, x, &geometry, floats, bias, shape)?
+        Ok(vec![by_products(planner, node, x, &geometry, floats, bias, shape)?])
     } else {
-        by_phases(planner, node, x, &geometry, &phases, floats, bias, shape)?
-    };
-    Ok(vec![y])
+        by_phases(planner, node, x, &geometry, &phases, floats, bias, shape)
+    }
 }
 
 fn geometry(node: &NodeProto, dims: &[usize], weights: &Constant) -> Result<Geometry> {
@@ -177,7 +176,7 @@ fn by_phases(
     floats: &[f32],
     bias: Option<&[f32]>,
     shape: Vec<usize>,
-) -> Result<Id> {
+) -> Result<Vec<Id>> {
     let Geometry { batch, groups, inputs, outputs, .. } = *geometry;
     let (in_channels, out_channels) = (groups * inputs, groups * outputs);
     let whole_x = Strides::channels_last(geometry.input, in_channels);
@@ -212,18 +211,7 @@ fn by_phases(
             });
         }
     }
-    let residual = match fused.residual {
-        Some(residual) => Some(planner.channels_last(residual)?),
-        None => None,
-    };
-    let ids = planner.emit(
-        PhasesStep(phases),
-        &[Some(x), residual],
-        &[(Kind::F32, shape, Layout::ChannelsLast)],
-    )?;
-    let y = ids.first().copied().ok_or_else(|| node.damaged("its outputs"))?;
-    fused.absorb(planner, y);
-    Ok(y)
+    emit_fused(planner, PhasesStep(phases), x, fused, shape)
 }
 
 /// Returns the weights of a phase, `[groups * outputs, inputs, rows, columns]`.

@@ -225,15 +225,10 @@ impl TrainingConvolution {
 mod tests {
     use super::*;
     use crate::isa::Isa;
+    use crate::reference::{assert_near, random};
 
     /// Distance between a number and its f64 reference, relative to the largest one.
     const TOLERANCE: f64 = 2e-5;
-
-    fn random(length: usize, seed: usize) -> Vec<f32> {
-        (0..length)
-            .map(|i| ((i * 7919 + seed * 104_729 + i * i % 611) % 2003) as f32 / 1001.0 - 1.0)
-            .collect()
-    }
 
     /// Calls a function with the indices of input, weight and output of every product.
     fn products(conv: &TrainingConvolution, mut each: impl FnMut(usize, usize, usize)) {
@@ -258,14 +253,6 @@ mod tests {
                     }
                 }
             }
-        }
-    }
-
-    fn assert_near(got: &[f32], wanted: &[f64], what: &str) {
-        let largest = wanted.iter().fold(1e-3, |largest: f64, value| largest.max(value.abs()));
-        for (i, (got, wanted)) in got.iter().zip(wanted).enumerate() {
-            let distance = (f64::from(*got) - wanted).abs();
-            assert!(distance <= TOLERANCE * largest, "{what}, {i}: {got} in place of {wanted}");
         }
     }
 
@@ -322,9 +309,19 @@ mod tests {
                     let y = conv.forward(&compute, &x, &weights, Some(&bias));
                     let results = [y, conv.input_gradient(&compute, &weights, &dy), dw];
                     let [y, dx, dw] = &results;
-                    assert_near(y, &y_wanted, &format!("output of {conv:?}, {isa}"));
-                    assert_near(dx, &dx_wanted, &format!("gradient of the input of {conv:?}, {isa}"));
-                    assert_near(dw, &dw_wanted, &format!("gradient of the weights of {conv:?}, {isa}"));
+                    assert_near(y, &y_wanted, TOLERANCE, &format!("output of {conv:?}, {isa}"));
+                    assert_near(
+                        dx,
+                        &dx_wanted,
+                        TOLERANCE,
+                        &format!("gradient of the input of {conv:?}, {isa}"),
+                    );
+                    assert_near(
+                        dw,
+                        &dw_wanted,
+                        TOLERANCE,
+                        &format!("gradient of the weights of {conv:?}, {isa}"),
+                    );
                     let one = of_one.get_or_insert_with(|| results.clone());
                     assert_eq!(*one, results, "{conv:?}, {isa}: threads change the bits");
                 }

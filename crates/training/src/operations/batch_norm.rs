@@ -14,7 +14,7 @@ use opendr_kernels::{BatchNormalization, BatchStatistics, Unary};
 
 use super::{
     Cpu, CpuTrained, Own, Trained, channels_last, channels_last_of, channels_second, compute,
-    from_channels_last, numbers, shape, tensor,
+    from_channels_last, numbers, register, shape, tensor,
 };
 use crate::layers::Activation;
 
@@ -161,15 +161,11 @@ impl Backward<Flex, 3> for Normalized {
         let (gamma, beta) = (gamma.to_contiguous(), beta.to_contiguous());
         let norm = BatchNormalization { gamma: numbers(&gamma), beta: numbers(&beta), epsilon, activation };
         let [dgamma, dbeta] = norm.backward(compute(), numbers(&pixels), &statistics, dy.storage_mut());
-        let [of_x, of_gamma, of_beta] = ops.parents;
-        if let Some(node) = of_x {
-            gradients.register::<Flex>(node.id, channels_second(&dy));
-        }
-        for (node, gradient) in [(of_gamma, dgamma), (of_beta, dbeta)] {
-            if let Some(node) = node {
-                let channels = gradient.len();
-                gradients.register::<Flex>(node.id, tensor(gradient, [channels]));
-            }
-        }
+        let vector = |gradient: Vec<f32>| {
+            let channels = gradient.len();
+            Some(tensor(gradient, [channels]))
+        };
+        let all = [Some(channels_second(&dy)), vector(dgamma), vector(dbeta)];
+        register(gradients, ops.parents.map(|node| node.map(|node| node.id)), all);
     }
 }

@@ -12,7 +12,8 @@ use burn::tensor::Tensor;
 use opendr_kernels::{TrainingConvolution, Window, add_column_sums};
 
 use super::{
-    Cpu, CpuTrained, Own, Trained, channels_last, compute, from_channels_last, numbers, shape, tensor,
+    Cpu, CpuTrained, Own, Trained, channels_last, compute, from_channels_last, numbers, register, shape,
+    tensor,
 };
 
 /// Returns the convolution of images `[batch, channels, height, width]`, as [`Conv2d::forward`].
@@ -160,11 +161,7 @@ impl Backward<Flex, 2> for WithoutBias {
         let weight = checkpointer.retrieve_node_output::<Cpu>(weight);
         let wanted = ops.parents.each_ref().map(Option::is_some);
         let all = gradients(&sizes, [&x, &weight], &dy, wanted);
-        for (node, gradient) in ops.parents.into_iter().zip(all) {
-            if let (Some(node), Some(gradient)) = (node, gradient) {
-                gradients_of.register::<Flex>(node.id, gradient);
-            }
-        }
+        register(gradients_of, ops.parents.map(|node| node.map(|node| node.id)), all);
     }
 }
 
@@ -199,11 +196,7 @@ impl Backward<Flex, 3> for WithBias {
             add_column_sums(compute().isa(), numbers(&channels_last(&dy)), &mut sums);
             tensor(sums, [sizes.outputs])
         });
-        for (node, gradient) in [(of_x, dx), (of_weight, dw), (of_bias, db)] {
-            if let (Some(node), Some(gradient)) = (node, gradient) {
-                gradients_of.register::<Flex>(node.id, gradient);
-            }
-        }
+        register(gradients_of, [of_x, of_weight, of_bias].map(|node| node.map(|node| node.id)), [dx, dw, db]);
     }
 }
 

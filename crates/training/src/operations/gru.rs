@@ -10,7 +10,7 @@ use burn::backend::autodiff::ops::{Backward, Ops, OpsKind};
 use burn::tensor::{DType, Tensor};
 use opendr_kernels::{Gru, GruTape};
 
-use super::{Cpu, Trained, compute, numbers, shape, tensor};
+use super::{Cpu, Trained, compute, numbers, register, shape, tensor};
 
 /// Returns the states of all steps, `[batch, time, hidden]`, of an input `[batch, time, features]` that is trained on the CPU, from a zero
 /// state; `None` for others. Weights are `[3 hidden, features]` and `[3 hidden, hidden]`, in the order of PyTorch's gates.
@@ -120,10 +120,6 @@ impl Backward<Flex, 5> for Recurrent {
             Some(bias(c)),
             Some(bias(d)),
         ];
-        for (node, gradient) in ops.parents.into_iter().zip(all) {
-            if let (Some(node), Some(gradient)) = (node, gradient) {
-                gradients.register::<Flex>(node.id, gradient);
-            }
-        }
+        register(gradients, ops.parents.map(|node| node.map(|node| node.id)), all);
     }
 }

@@ -11,6 +11,8 @@ mod gru;
 
 use std::sync::OnceLock;
 
+use burn::backend::autodiff::NodeId;
+use burn::backend::autodiff::grads::Gradients;
 use burn::backend::tensor::FloatTensor;
 use burn::backend::{Autodiff, Flex};
 use burn::tensor::{DType, Tensor, TensorData};
@@ -120,6 +122,19 @@ fn tensor(numbers: Vec<f32>, shape: impl Into<Vec<usize>>) -> Cpu {
 fn from_channels_last(numbers: Vec<f32>, shape: &[usize]) -> Cpu {
     let in_memory: Vec<usize> = channels_last_axes(shape.len()).into_iter().map(|axis| shape[axis]).collect();
     channels_second(&tensor(numbers, in_memory))
+}
+
+/// Registers the gradients of the parents of an operation that have any.
+fn register(
+    gradients: &mut Gradients,
+    parents: impl IntoIterator<Item = Option<NodeId>>,
+    all: impl IntoIterator<Item = Option<Cpu>>,
+) {
+    for (node, gradient) in parents.into_iter().zip(all) {
+        if let (Some(node), Some(gradient)) = (node, gradient) {
+            gradients.register::<Flex>(node, gradient);
+        }
+    }
 }
 
 /// Returns the sizes of a tensor.
